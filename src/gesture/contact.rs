@@ -1,0 +1,100 @@
+//! Contacts: what touches the table, as every source reports it.
+
+use glam::DVec2;
+
+use super::command::Command;
+
+/// Where a contact comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Source {
+    /// Touch events of the window system.
+    Window,
+    /// The mouse, standing in for a finger.
+    Mouse,
+    /// A raw HID touchscreen.
+    Hid,
+    /// A TUIO sender.
+    Tuio,
+    /// A gesture file.
+    File,
+}
+
+/// Names one contact for as long as it is down, and never another one after that: sources reuse their ids, so each
+/// `Down` raises the generation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ContactKey {
+    /// Where it comes from.
+    pub source: Source,
+    /// Which device of that source.
+    pub device: u16,
+    /// The source's own id, unique while the contact is down.
+    pub id: u64,
+    /// How often this id went down before.
+    pub generation: u32,
+}
+
+/// One contact at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Its name.
+    pub key: ContactKey,
+    /// Where it is, table millimetres (x right, y down).
+    pub position: DVec2,
+    /// Width and height of the touching area in millimetres, where the device tells.
+    pub size_mm: Option<DVec2>,
+    /// The device's confidence that this is a finger, 0 (palm, unsure) to 1, where it tells.
+    pub confidence: Option<f32>,
+}
+
+/// What happens to a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Phase {
+    /// It lands.
+    Down,
+    /// It moves (or its size or confidence changes).
+    Move,
+    /// It lifts.
+    Up,
+    /// It is withdrawn: it was none, or its device went away.
+    Cancel,
+}
+
+/// A contact and what happens to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEvent {
+    /// What happens.
+    pub phase: Phase,
+    /// The contact as it is after that (for `Up` and `Cancel`: as it last was).
+    pub contact: Contact,
+}
+
+/// All that happens at one moment of session time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InputFrame {
+    /// Session time in microseconds (gesture files carry milliseconds with at most three decimals).
+    pub t_us: u64,
+    /// What the contacts do, in the order of the file or device.
+    pub events: Vec<ContactEvent>,
+    /// What visitors do outside the contacts.
+    pub commands: Vec<Command>,
+}
+
+/// A long side of the table. Tools, undo and menus belong to a side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// The upper half.
+    North,
+    /// The lower half.
+    South,
+}
+
+impl Side {
+    /// The side of the table that `position` (mm) is nearer to.
+    pub fn of(position: DVec2, size_mm: DVec2) -> Self {
+        if position.y < size_mm.y / 2.0 {
+            Self::North
+        } else {
+            Self::South
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! The `orogen` command.
+
+fn main() {}
