@@ -2,7 +2,10 @@
 
 pub mod units;
 
+pub mod export;
 pub mod gesture;
+pub mod input;
 pub mod mountain;
+pub mod picture;
 pub mod surface;
 pub mod terrain;

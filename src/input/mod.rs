@@ -1,0 +1,3 @@
+//! What comes from outside: maps.
+
+pub mod maps;

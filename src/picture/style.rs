@@ -1,0 +1,25 @@
+//! Choices a map may make.
+
+/// How a relief map is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapStyle {
+    /// First line of the caption; empty for none.
+    pub title: String,
+    /// Heights are multiplied by this before they are lit. Printed on the map wherever it is not 1.
+    pub vertical_exaggeration: f64,
+    /// Draw plates, arrows and faults.
+    pub marks: bool,
+    /// Draw caption, scale bar and neat line.
+    pub lettering: bool,
+}
+
+impl Default for MapStyle {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            vertical_exaggeration: 1.0,
+            marks: true,
+            lettering: true,
+        }
+    }
+}
