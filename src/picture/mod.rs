@@ -1,13 +1,56 @@
 //! From the surface to pictures.
+//!
+//! [`relief_map`] draws the land as an atlas would print it, in the manner of the Swiss school (Imhof 1965): light
+//! from the north-west, cool shadows, quiet greens, contrast that grows towards the summits. Everything is computed
+//! on the CPU, row by row and in parallel, and does not depend on the number of threads.
 
+mod colour;
+mod cover;
+mod field;
+mod frame;
+mod horizon;
+mod ink;
+mod lettering;
+mod light;
+mod noise;
+mod paint;
 mod style;
+mod water;
 
+pub use frame::MapFrame;
 pub use style::MapStyle;
+
+use image::RgbaImage;
+use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use crate::surface::Surface;
 
-/// The land as an atlas would print it.
-pub fn relief_map(surface: &Surface, style: &MapStyle, width: u32, height: u32) -> image::RgbaImage {
-    let _ = (surface, style);
-    image::RgbaImage::new(width, height)
+/// Largest side of a picture, pixels.
+pub const MAX_SIDE: u32 = 16_384;
+
+/// The land as an atlas would print it: opaque, north up. Sides are brought into `1..=`[`MAX_SIDE`].
+///
+/// The land fills the picture up to the margins for caption and scale ([`MapStyle::lettering`]), undistorted; where
+/// the picture has other proportions than the land, paper remains on two sides ([`MapFrame`]).
+pub fn relief_map(surface: &Surface, style: &MapStyle, width: u32, height: u32) -> RgbaImage {
+    let (width, height) = (width.clamp(1, MAX_SIDE), height.clamp(1, MAX_SIDE));
+    draw(surface, style, width, height)
+        .and_then(|sheet| RgbaImage::from_raw(width, height, sheet.take()))
+        .unwrap_or_else(|| RgbaImage::new(width, height))
+}
+
+/// `None` only for sizes a pixmap cannot have.
+fn draw(surface: &Surface, style: &MapStyle, width: u32, height: u32) -> Option<Pixmap> {
+    let frame = MapFrame::new(surface.height.extent, style, width, height);
+    let mut land = paint::land(surface, style, frame)?;
+    water::draw_rivers(&mut land, surface, frame);
+    if style.marks {
+        ink::draw_marks(&mut land, surface, frame);
+    }
+    lettering::sheet(&land, surface, style, frame, width, height)
+}
+
+/// An opaque pixel.
+fn opaque([red, green, blue]: [u8; 3]) -> PremultipliedColorU8 {
+    PremultipliedColorU8::from_rgba(red, green, blue, 255).unwrap_or(PremultipliedColorU8::TRANSPARENT)
 }

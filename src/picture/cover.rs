@@ -1,0 +1,124 @@
+//! What grows and lies on the land: colours by height, slope, aspect and place.
+
+use glam::Vec3;
+
+use super::colour::{Ramp, linear, smoothstep};
+use super::light::Spot;
+use super::noise;
+
+/// The colours of the map, in linear light. Greens are never loud, rock is warm, shadows come from the light.
+pub(super) struct Palette {
+    open: Ramp,
+    wood: Ramp,
+    rock: Ramp,
+    scree: Vec3,
+    snow: Vec3,
+    water_meadow: Vec3,
+    shallow: Vec3,
+    deep: Vec3,
+    haze: Vec3,
+}
+
+impl Palette {
+    pub(super) fn new() -> Self {
+        Self {
+            open: Ramp::new(&[
+                (-400.0, 0xc3_cfae),
+                (0.0, 0xcc_d3b0),
+                (300.0, 0xd3_d6b1),
+                (800.0, 0xcf_d0a6),
+                (1500.0, 0xc9_c699),
+                (2100.0, 0xc9_c09c),
+                (2700.0, 0xd0_c5ac),
+                (3600.0, 0xdc_d5c8),
+            ]),
+            wood: Ramp::new(&[
+                (-200.0, 0xa3_b593),
+                (400.0, 0x97_ab84),
+                (1200.0, 0x86_9c76),
+                (1900.0, 0x7f_9273),
+            ]),
+            rock: Ramp::new(&[(500.0, 0xb3_a48c), (1800.0, 0xb1_a595), (3200.0, 0xb6_aea6)]),
+            scree: linear(0xc8_bfae),
+            snow: linear(0xfb_fbf9),
+            water_meadow: linear(0xb4_c69c),
+            shallow: linear(0x9f_c4cf),
+            deep: linear(0x4f_86a3),
+            haze: linear(0xc4_d0d8),
+        }
+    }
+
+    /// Colour of the dry land at a place (east, north, metres) and height (metres). `floodplain` is 1 beside large
+    /// rivers.
+    pub(super) fn land(&self, at: (f32, f32), height: f32, floodplain: f32, spot: &Spot) -> Vec3 {
+        let (east, north) = at;
+        let broad = noise::fractal(east / 5200.0, north / 5200.0, 3, 11);
+        let fine = noise::fractal(east / 900.0, north / 900.0, 3, 23);
+        let border = 0.6 * broad + 0.4 * fine;
+        let slope = spot.steepness;
+
+        // Hypsometric tints, with borders that wander.
+        let mut colour = self.open.at(height + 140.0 * border);
+
+        // The plains: a quilt of fields.
+        let plain = 1.0 - smoothstep(0.05, 0.16, spot.form_steepness + 0.3 * slope);
+        if plain > 0.0 {
+            let warp = 0.35 * fine;
+            let (word, edge) = noise::parcel(east / 820.0 + warp, north / 820.0 - warp, 31);
+            let tone = 0.030 * noise::signed(word) + 0.05 * broad;
+            let warmth = 0.025 * noise::signed(word.wrapping_mul(0x9E37_79B1));
+            let hedge = 0.035 * (1.0 - smoothstep(0.0, 0.10, edge));
+            let field = Vec3::new(
+                1.0 + tone + warmth - hedge,
+                1.0 + tone - hedge,
+                1.0 + tone - warmth - hedge,
+            );
+            colour *= Vec3::ONE.lerp(field, plain);
+        }
+        let meadow = floodplain * (1.0 - smoothstep(0.06, 0.20, slope));
+        colour = colour.lerp(self.water_meadow, 0.75 * meadow);
+
+        // Woods: on slopes too steep to plough and not too steep to root, in hollows, on shaded sides; in patches on
+        // the plain, along its rivers.
+        let tree_line = 1850.0 - 130.0 * spot.northness + 190.0 * border;
+        let below = 1.0 - smoothstep(tree_line - 260.0, tree_line + 60.0, height);
+        let rooted = smoothstep(0.07, 0.26, slope) * (1.0 - smoothstep(0.85, 1.25, slope));
+        let patch = smoothstep(0.28, 0.62, 0.75 * broad + 0.55 * fine + 0.15 * meadow) * 0.75;
+        let clearing = smoothstep(
+            -0.75,
+            0.05,
+            fine + 0.5 * broad + 0.45 * spot.northness - 0.35 * spot.convexity,
+        );
+        let wood = below * (rooted * clearing).max(patch * (1.0 - smoothstep(0.85, 1.25, slope)));
+        colour = colour.lerp(self.wood.at(height), 0.88 * wood);
+
+        // Scree below, rock where nothing holds.
+        let alpine = smoothstep(1500.0, 2300.0, height + 260.0 * border);
+        let scree = alpine * smoothstep(0.38, 0.62, slope + 0.12 * fine) * 0.75;
+        colour = colour.lerp(self.scree, scree);
+        let bare = smoothstep(
+            0.74 - 0.20 * alpine,
+            1.02 - 0.20 * alpine,
+            slope + 0.10 * fine + 0.10 * spot.convexity,
+        );
+        let grain = 1.0 + 0.07 * fine;
+        colour = colour.lerp(self.rock.at(height) * grain, bare * (0.55 + 0.45 * alpine));
+
+        // Snow: high, in the shade lower, in hollows lower, not on faces it slides from.
+        let snow_line = 2750.0 - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
+        let lies = smoothstep(snow_line - 130.0, snow_line + 330.0, height);
+        let slides = smoothstep(0.80, 1.15, slope + 0.08 * fine);
+        colour.lerp(self.snow, lies * (1.0 - 0.85 * slides))
+    }
+
+    /// Colour of standing water of some depth, metres.
+    pub(super) fn lake(&self, depth: f32) -> Vec3 {
+        self.shallow.lerp(self.deep, 1.0 - (-depth.max(0.0) / 60.0).exp())
+    }
+
+    /// The colour seen through the air above low land: `height_share` 0 in the plains, 1 at the summits.
+    pub(super) fn through_air(&self, colour: Vec3, height_share: f32) -> Vec3 {
+        let thickness = 0.20 * (1.0 - height_share) * (1.0 - height_share);
+        colour.lerp(self.haze, thickness)
+    }
+}

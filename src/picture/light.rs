@@ -1,0 +1,234 @@
+//! The light of a Swiss relief map (Imhof 1965, *Kartographische Geländedarstellung*): a warm sun in the north-west,
+//! a cool sky, soft shadows.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::colour::smoothstep;
+use super::field::Field;
+use super::horizon::{horizon, sky_view};
+use super::noise;
+
+/// Height of the sun over the horizon, radians.
+const SUN_ELEVATION: f32 = 0.70;
+
+/// Where the sun stands, radians clockwise from north.
+const SUN_AZIMUTH: f64 = 315.0 / 180.0 * std::f64::consts::PI;
+
+/// Sun for cast shadows: lower than the one for slopes would throw them too far, so mountains are shaded by one sun
+/// and cast shadows by the lower rim of a wide one. Tangents of the elevations between which the light fades.
+const PENUMBRA: (f32, f32) = (0.36, 0.78);
+
+/// Azimuths the sky is looked at.
+const SKY_DIRECTIONS: usize = 12;
+
+/// Most pixels the sky is computed at; above, every second (third, …) pixel serves, as the sky's light is soft.
+const SKY_PIXELS: usize = 700_000;
+
+/// Colours of light. Flat open ground receives exactly white.
+const SUN: Vec3 = Vec3::new(1.0, 0.935, 0.80);
+const SKY: Vec3 = Vec3::new(0.62, 0.76, 1.0);
+/// Share of the light on flat ground that comes from the sun.
+const SUN_SHARE: f32 = 0.60;
+
+/// The shape of the land as light and land cover see it. All heights are in pixels, exaggerated.
+pub(super) struct Relief {
+    /// Heights without the facets of the mesh they come from.
+    ground: Field,
+    /// Heights over a few mesh edges: the direction of slopes.
+    slopes: Field,
+    /// Heights over some kilometres: the big forms.
+    forms: Field,
+    /// Tangent of the horizon towards the sun.
+    towards_sun: Field,
+    /// Part of the sky seen, on a coarser grid.
+    sky: Field,
+    /// Wavelength of the gullies that continue the land below the mesh, pixels; 0 for none.
+    gully_wavelength: f32,
+    /// Vertical exaggeration that is in the heights.
+    exaggeration: f32,
+}
+
+/// Land and light at one pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// Light relative to flat open ground.
+    pub(super) light: Vec3,
+    /// Tangent of the true steepness.
+    pub(super) steepness: f32,
+    /// Tangent of the true steepness of the big form around.
+    pub(super) form_steepness: f32,
+    /// 1 on north faces, −1 on south faces, 0 on flat ground.
+    pub(super) northness: f32,
+    /// Ridges positive, hollows negative, about −1 to 1.
+    pub(super) convexity: f32,
+    /// Part of the sky seen.
+    pub(super) sky: f32,
+}
+
+impl Relief {
+    /// From heights in metres on pixels of `metres_per_pixel`, known every `spacing` pixels.
+    pub(super) fn new(metres: &Field, metres_per_pixel: f32, spacing: f32, exaggeration: f32) -> Self {
+        let mut ground = metres.clone();
+        let scale = exaggeration / metres_per_pixel;
+        ground.data.par_iter_mut().for_each(|z| *z *= scale);
+        let ground = ground.blurred(if spacing > 1.0 { 0.38 * spacing } else { 0.0 });
+        let slopes = ground.blurred((0.9 * spacing).max(2.0));
+        let forms = ground.blurred((2200.0 / metres_per_pixel).max(2.0 * spacing));
+        let towards_sun = horizon(&ground, SUN_AZIMUTH);
+        let pixels = ground.data.len();
+        let skip = ((pixels as f64 / SKY_PIXELS as f64).sqrt().ceil() as usize).max(1);
+        let sky = sky_view(&every(&ground, skip), SKY_DIRECTIONS);
+        let gully_wavelength = 2.4 * spacing;
+        Self {
+            ground,
+            slopes,
+            forms,
+            towards_sun,
+            sky,
+            gully_wavelength: if gully_wavelength > 3.0 {
+                gully_wavelength
+            } else {
+                0.0
+            },
+            exaggeration,
+        }
+    }
+
+    /// Light and land at a pixel; `height_share` is 0 in the plains and 1 at the summits (aerial perspective:
+    /// contrast grows with height).
+    pub(super) fn spot(&self, x: usize, y: usize, height_share: f32) -> Spot {
+        let fine = self.ground.gradient(x, y);
+        let middle = self.slopes.gradient(x, y);
+        let form = self.forms.gradient(x, y);
+        let steep = length(middle);
+
+        // In the plains only the smoothed land counts: its finest noise is no form.
+        let rugged = smoothstep(0.015, 0.10, steep);
+        let mut slope = mix(middle, fine, rugged);
+        let mut furrow = 0.0;
+        if self.gully_wavelength > 0.0 && steep > 0.06 {
+            let (carved, depth) = self.gullies(x, y, middle, steep);
+            slope = (slope.0 + carved.0, slope.1 + carved.1);
+            furrow = depth;
+        }
+
+        // Gentle land is lit as if it were a little steeper, as draughtsmen do: contrast, not height.
+        let gentle = 1.0 + 2.6 * (1.0 - smoothstep(0.0, 0.16, length(form) + 0.6 * steep));
+        let lit = (slope.0 * gentle, slope.1 * gentle);
+        let direct = 0.72 * sun_on(lit) + 0.28 * sun_on((form.0 * gentle * 1.3, form.1 * gentle * 1.3));
+
+        let i = y * self.ground.width + x;
+        let shadow = 1.0 - smoothstep(PENUMBRA.0, PENUMBRA.1, self.towards_sun.data[i]);
+        let skip = self.ground.width as f32 / self.sky.width as f32;
+        let sky = self
+            .sky
+            .sample((x as f32 + 0.5) / skip - 0.5, (y as f32 + 0.5) / skip - 0.5);
+        let up = 1.0 / (1.0 + slope.0 * slope.0 + slope.1 * slope.1).sqrt();
+
+        let sun = direct / SUN_ELEVATION.sin() * (0.25 + 0.75 * shadow);
+        let dome = sky * sky * (0.55 + 0.45 * up);
+        let white = SUN * SUN_SHARE + SKY * (1.0 - SUN_SHARE);
+        let light = (SUN * (SUN_SHARE * sun) + SKY * ((1.0 - SUN_SHARE) * dome)) / white;
+        // Low land is seen through more air: its lights and shadows are weaker.
+        let contrast = 0.80 + 0.28 * height_share;
+        let light = Vec3::ONE + (light - Vec3::ONE) * contrast;
+
+        let true_steepness = length(slope) / self.exaggeration;
+        let bend = self.ground.data[i] - self.slopes.data[i];
+        Spot {
+            light: light.max(Vec3::splat(0.06)),
+            steepness: true_steepness,
+            form_steepness: length(form) / self.exaggeration,
+            northness: if steep > 1e-6 {
+                -slope.1 / length(slope).max(0.15)
+            } else {
+                0.0
+            },
+            convexity: (bend / (0.25 * self.gully_wavelength.max(3.0))).clamp(-1.0, 1.0) + furrow,
+            sky,
+        }
+    }
+
+    /// Gradient and profile of gullies down the slope, in two generations, the finer ones running into the coarser.
+    fn gullies(&self, x: usize, y: usize, down: (f32, f32), steep: f32) -> ((f32, f32), f32) {
+        let mut direction = (-down.0 / steep, -down.1 / steep);
+        let mut wavelength = self.gully_wavelength;
+        let mut strength = 0.55 * steep.min(1.0) * smoothstep(0.06, 0.35, steep);
+        let (mut carved, mut profile, mut share) = ((0.0, 0.0), 0.0, 0.6);
+        // Lattice coordinates with y to the north, as directions have it.
+        let (east, north) = (x as f32, -(y as f32));
+        for generation in 0..3 {
+            if wavelength < 2.5 {
+                break;
+            }
+            let (wave, across) = noise::gullies(
+                east / wavelength,
+                north / wavelength,
+                direction,
+                0x9d1 + generation,
+            );
+            let sideways = (-direction.1, direction.0);
+            carved.0 += strength * across * sideways.0;
+            carved.1 += strength * across * sideways.1;
+            profile += share * wave;
+            // The next ones start from the flanks of these.
+            let turned = (
+                direction.0 - 0.7 * across * sideways.0,
+                direction.1 - 0.7 * across * sideways.1,
+            );
+            let size = length(turned).max(1e-6);
+            direction = (turned.0 / size, turned.1 / size);
+            wavelength *= 0.5;
+            strength *= 0.6;
+            share *= 0.6;
+        }
+        (carved, profile)
+    }
+}
+
+/// Every `skip`-th pixel's neighbourhood as one pixel, heights in its own pixels.
+fn every(heights: &Field, skip: usize) -> Field {
+    if skip == 1 {
+        return heights.clone();
+    }
+    let (width, height) = (heights.width.div_ceil(skip), heights.height.div_ceil(skip));
+    let mut data = vec![0.0; width * height];
+    data.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+        for (x, value) in out.iter_mut().enumerate() {
+            let middle = (skip as f32 - 1.0) * 0.5;
+            *value = heights.sample((x * skip) as f32 + middle, (y * skip) as f32 + middle) / skip as f32;
+        }
+    });
+    Field { width, height, data }
+}
+
+/// Cosine of the sun's incidence on a slope (east, north).
+///
+/// Seven tenths by the sun itself, the rest by suns in the west-south-west to north weighted by how much the slope
+/// faces across them (Mark 1992, "Multidirectional, oblique-weighted, shaded-relief image"), so that ridges that run
+/// towards the sun keep their form.
+fn sun_on(slope: (f32, f32)) -> f32 {
+    let up = 1.0 / (1.0 + slope.0 * slope.0 + slope.1 * slope.1).sqrt();
+    let (sin, cos) = SUN_ELEVATION.sin_cos();
+    let towards = |east: f32, north: f32| (up * (sin - cos * (slope.0 * east + slope.1 * north))).max(0.0);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let sun = towards(-half, half);
+    let (e2, n2) = (slope.0 * slope.0, slope.1 * slope.1);
+    let steep2 = e2 + n2;
+    if steep2 < 1e-8 {
+        return sun;
+    }
+    // Sine squared of the angle between aspect and each sun.
+    let (west, north) = (n2 / steep2, e2 / steep2);
+    let oblique = (west * towards(-1.0, 0.0) + north * towards(0.0, 1.0)) / (west + north);
+    0.72 * sun + 0.28 * oblique
+}
+
+fn length(v: (f32, f32)) -> f32 {
+    (v.0 * v.0 + v.1 * v.1).sqrt()
+}
+
+fn mix(a: (f32, f32), b: (f32, f32), t: f32) -> (f32, f32) {
+    (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t)
+}

@@ -1,0 +1,160 @@
+//! Noise from position hashes: the same place gives the same value, on any machine and with any thread count.
+
+/// A well mixed word from a lattice point (after Jarzynski & Olano 2020, "Hash functions for GPU rendering", pcg).
+#[inline]
+fn hash(x: i32, y: i32, seed: u32) -> u32 {
+    let mut v = (x as u32)
+        .wrapping_mul(0x9E37_79B1)
+        .wrapping_add((y as u32).wrapping_mul(0x85EB_CA77))
+        .wrapping_add(seed.wrapping_mul(0xC2B2_AE3D));
+    v = v.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    v = ((v >> ((v >> 28) + 4)) ^ v).wrapping_mul(277_803_737);
+    (v >> 22) ^ v
+}
+
+/// Upper bits of a word as a number in [0, 1).
+#[inline]
+fn unit(word: u32) -> f32 {
+    (word >> 8) as f32 / (1 << 24) as f32
+}
+
+/// Value noise in [−1, 1], of wavelength about two (Perlin's quintic between lattice values).
+#[inline]
+pub(super) fn value(x: f32, y: f32, seed: u32) -> f32 {
+    let (x0, y0) = (x.floor(), y.floor());
+    let (fx, fy) = (x - x0, y - y0);
+    let (ix, iy) = (x0 as i32, y0 as i32);
+    let ease = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    let (u, v) = (ease(fx), ease(fy));
+    let at = |dx: i32, dy: i32| unit(hash(ix.wrapping_add(dx), iy.wrapping_add(dy), seed));
+    let south = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
+    let north = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
+    (south + (north - south) * v) * 2.0 - 1.0
+}
+
+/// Octaves of [`value`], each half as large and twice as fine, scaled to about [−1, 1]. Octaves are turned against
+/// each other, so that the lattice does not show.
+#[inline]
+pub(super) fn fractal(mut x: f32, mut y: f32, octaves: u32, seed: u32) -> f32 {
+    let (mut sum, mut amplitude, mut total) = (0.0, 1.0, 0.0);
+    for octave in 0..octaves {
+        sum += amplitude * value(x, y, seed.wrapping_add(octave));
+        total += amplitude;
+        amplitude *= 0.5;
+        (x, y) = (1.6 * x + 1.2 * y + 17.3, -1.2 * x + 1.6 * y - 9.1);
+    }
+    1.4 * sum / total
+}
+
+/// Parcel of land at a position: a word for the nearest of the jittered lattice points, and how near the border to
+/// the next parcel is (0 on it; Worley 1996).
+#[inline]
+pub(super) fn parcel(x: f32, y: f32, seed: u32) -> (u32, f32) {
+    let (ix, iy) = (x.floor() as i32, y.floor() as i32);
+    let (mut nearest, mut second, mut owner) = (f32::MAX, f32::MAX, 0);
+    for dy in -1..=1 {
+        for dx in -1..=1 {
+            let (cx, cy) = (ix.wrapping_add(dx), iy.wrapping_add(dy));
+            let word = hash(cx, cy, seed);
+            let px = cx as f32 + 0.1 + 0.8 * unit(word) - x;
+            let py = cy as f32 + 0.1 + 0.8 * unit(word.wrapping_mul(0x9E37_79B1)) - y;
+            // Fields have straight sides: between the square's and the circle's distance.
+            let distance = 0.5 * (px * px + py * py).sqrt() + 0.5 * px.abs().max(py.abs());
+            if distance < nearest {
+                second = nearest;
+                (nearest, owner) = (distance, word);
+            } else if distance < second {
+                second = distance;
+            }
+        }
+    }
+    (owner, second - nearest)
+}
+
+/// A word as a number in [−1, 1).
+#[inline]
+pub(super) fn signed(word: u32) -> f32 {
+    unit(word) * 2.0 - 1.0
+}
+
+/// Waves whose crests run along `(ux, uy)` (unit vector), of wavelength one: the profile in [−1, 1], and its
+/// derivative across the crests.
+///
+/// A sum of local plane waves of random phase, one per lattice cell, each weighted by a bump around a jittered centre
+/// (sparse convolution as in Lagae et al. 2009). With crests down the slope it has the look of gullies and spurs
+/// where the data ends.
+#[inline]
+pub(super) fn gullies(x: f32, y: f32, (ux, uy): (f32, f32), seed: u32) -> (f32, f32) {
+    let (ix, iy) = (x.floor() as i32, y.floor() as i32);
+    let (mut profile, mut steepness, mut total) = (0.0, 0.0, 1e-4);
+    for dy in -1..=1 {
+        for dx in -1..=1 {
+            let (cx, cy) = (ix.wrapping_add(dx), iy.wrapping_add(dy));
+            let word = hash(cx, cy, seed);
+            let px = x - (cx as f32 + 0.2 + 0.6 * unit(word));
+            let py = y - (cy as f32 + 0.2 + 0.6 * unit(word.wrapping_mul(0x9E37_79B1)));
+            let near = 1.0 - (px * px + py * py) / (1.2 * 1.2);
+            if near > 0.0 {
+                let weight = near * near;
+                let (wave, slope) = wave(px * -uy + py * ux + unit(word.wrapping_mul(0x85EB_CA77)) * 0.35);
+                profile += weight * wave;
+                steepness += weight * slope;
+                total += weight;
+            }
+        }
+    }
+    (profile / total, steepness / total)
+}
+
+/// A smooth wave of period one and its scaled derivative: parabolas in place of cosine and sine, which cost ten
+/// times as much and look the same.
+#[inline]
+fn wave(t: f32) -> (f32, f32) {
+    let bow = |t: f32| {
+        let f = t - t.floor() - 0.5;
+        8.0 * f * (1.0 - 2.0 * f.abs())
+    };
+    (bow(t + 0.25), bow(t + 0.5))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_bounded_centred_and_continuous() {
+        let (mut sum, mut low, mut high) = (0.0_f64, 0.0_f32, 0.0_f32);
+        for i in 0..20_000 {
+            let (x, y) = (i as f32 * 0.37 - 2000.0, i as f32 * 0.11);
+            let v = fractal(x, y, 4, 5);
+            (low, high) = (low.min(v), high.max(v));
+            sum += f64::from(v);
+            assert!((fractal(x + 1e-3, y, 1, 5) - fractal(x, y, 1, 5)).abs() < 0.02);
+        }
+        assert!(
+            low > -1.4 && high < 1.4 && low < -0.6 && high > 0.6,
+            "{low} {high}"
+        );
+        assert!((sum / 20_000.0).abs() < 0.05);
+    }
+
+    #[test]
+    fn gullies_run_along_their_direction() {
+        let (mut along, mut across) = (0.0, 0.0);
+        let (ux, uy) = (0.6, 0.8);
+        for i in 0..4000 {
+            let (x, y) = (i as f32 * 0.713, i as f32 * 0.291);
+            let here = gullies(x, y, (ux, uy), 3).0;
+            along += (gullies(x + 0.1 * ux, y + 0.1 * uy, (ux, uy), 3).0 - here).abs();
+            across += (gullies(x - 0.1 * uy, y + 0.1 * ux, (ux, uy), 3).0 - here).abs();
+        }
+        assert!(across > 3.0 * along, "{across} against {along}");
+    }
+
+    #[test]
+    fn parcels_have_borders() {
+        let (word, inside) = parcel(0.5, 0.5, 1);
+        assert!(inside >= 0.0);
+        assert_eq!(parcel(0.5, 0.5, 1).0, word);
+    }
+}

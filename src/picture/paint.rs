@@ -1,0 +1,71 @@
+//! The land itself: light times cover, seen through air.
+
+use rayon::prelude::*;
+use tiny_skia::Pixmap;
+
+use super::colour::{Encoder, smoothstep};
+use super::cover::Palette;
+use super::field::Field;
+use super::light::Relief;
+use super::water::{self, Lakes};
+use super::{MapFrame, MapStyle, opaque};
+use crate::surface::Surface;
+
+/// Heights that count as summits at least and at most, metres: hills are not painted as if they were the Alps.
+const SUMMITS: (f32, f32) = (1400.0, 4200.0);
+
+/// The land's pixels, without lines and letters.
+pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Option<Pixmap> {
+    let (width, height) = (frame.width as usize, frame.height as usize);
+    let metres_per_pixel = frame.metres_per_pixel() as f32;
+    let mut ground = Field::resampled(&surface.height, width, height);
+    ground.data.par_iter_mut().for_each(|z| {
+        if !z.is_finite() {
+            *z = 0.0;
+        }
+    });
+    let spacing = (surface.spacing / frame.metres_per_pixel()) as f32;
+    let relief = Relief::new(
+        &ground,
+        metres_per_pixel,
+        spacing,
+        style.vertical_exaggeration as f32,
+    );
+    let lakes = Lakes::new(surface, &ground, spacing);
+    let floodplain = water::floodplain(surface, frame);
+    let palette = Palette::new();
+    let encoder = Encoder::new();
+    let summit = ground
+        .data
+        .iter()
+        .fold(0.0_f32, |top, &z| top.max(z))
+        .clamp(SUMMITS.0, SUMMITS.1);
+
+    let mut pixmap = Pixmap::new(frame.width, frame.height)?;
+    let extent_height = frame.extent.height as f32;
+    pixmap
+        .pixels_mut()
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                let i = y * width + x;
+                let z = ground.data[i];
+                let height_share = smoothstep(0.0, summit, z);
+                let spot = relief.spot(x, y, height_share);
+                let at = (
+                    (x as f32 + 0.5) * metres_per_pixel,
+                    extent_height - (y as f32 + 0.5) * metres_per_pixel,
+                );
+                let mut colour = palette.land(at, z, floodplain.at(x, y), &spot) * spot.light;
+                let wet = lakes.cover.data[i];
+                if wet > 0.0 {
+                    let still = palette.lake(lakes.depth.data[i]) * (0.75 + 0.25 * spot.sky);
+                    let shore = 1.0 - 0.30 * smoothstep(0.0, 0.5, wet) * (1.0 - smoothstep(0.5, 1.0, wet));
+                    colour = colour.lerp(still, smoothstep(0.35, 0.65, wet)) * shore;
+                }
+                *pixel = opaque(encoder.encode(palette.through_air(colour, height_share)));
+            }
+        });
+    Some(pixmap)
+}
