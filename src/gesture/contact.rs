@@ -4,6 +4,18 @@ use glam::DVec2;
 
 use super::command::Command;
 
+/// Most contacts down at once, over all sources; what lands beyond that is not seen.
+pub const MAX_CONTACTS: usize = 256;
+
+/// Farthest coordinate that is believed, millimetres: twice the largest table, so that fingers may leave its edge.
+pub const MAX_COORDINATE_MM: f64 = 20_000.0;
+
+/// `mm` on the raster of gesture files, 0.01 mm. A recorder that also plays live rounds first, so that both are equal.
+pub fn quantise_mm(mm: f64) -> f64 {
+    // Adding zero turns −0 into 0, which the file has no sign for.
+    (mm * 100.0).round() / 100.0 + 0.0
+}
+
 /// Where a contact comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Source {
@@ -33,6 +45,13 @@ pub struct ContactKey {
     pub generation: u32,
 }
 
+impl ContactKey {
+    /// The name the source itself gives: equal for contacts that follow each other under one id.
+    pub fn slot(self) -> (Source, u16, u64) {
+        (self.source, self.device, self.id)
+    }
+}
+
 /// One contact at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -57,6 +76,19 @@ pub enum Phase {
     Up,
     /// It is withdrawn: it was none, or its device went away.
     Cancel,
+}
+
+impl Phase {
+    /// Place in the canonical order of one moment: up, cancel, move, down. An id that is set free can so land again
+    /// at the same moment; a contact that lands and lifts at once needs two frames of equal time.
+    pub fn order(self) -> u8 {
+        match self {
+            Self::Up => 0,
+            Self::Cancel => 1,
+            Self::Move => 2,
+            Self::Down => 3,
+        }
+    }
 }
 
 /// A contact and what happens to it.
