@@ -40,6 +40,7 @@ pub fn write(
         .iter()
         .map(|&(name, values)| {
             let name = Text::new_or_none(name)
+                .filter(|_| name.is_ascii())
                 .ok_or_else(|| invalid(format!("EXR channel `{name}`: the name must be ASCII")))?;
             Ok(AnyChannel::new(name, FlatSamples::F32(values.to_vec())))
         })

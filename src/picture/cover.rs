@@ -23,24 +23,25 @@ impl Palette {
     pub(super) fn new() -> Self {
         Self {
             open: Ramp::new(&[
-                (-400.0, 0xc3_cfae),
-                (0.0, 0xcc_d3b0),
-                (300.0, 0xd3_d6b1),
-                (800.0, 0xcf_d0a6),
-                (1500.0, 0xc9_c699),
-                (2100.0, 0xc9_c09c),
-                (2700.0, 0xd0_c5ac),
-                (3600.0, 0xdc_d5c8),
+                (-250.0, 0xc6_d3b0),
+                (-60.0, 0xd3_dab9),
+                (80.0, 0xdf_dfbf),
+                (300.0, 0xe4_e0bf),
+                (800.0, 0xda_d9b0),
+                (1500.0, 0xcd_cfa3),
+                (2100.0, 0xc8_c6a4),
+                (2700.0, 0xcc_c5b2),
+                (3600.0, 0xd8_d3cb),
             ]),
             wood: Ramp::new(&[
-                (-200.0, 0xa3_b593),
-                (400.0, 0x97_ab84),
-                (1200.0, 0x86_9c76),
-                (1900.0, 0x7f_9273),
+                (-200.0, 0xa8_ba96),
+                (400.0, 0x98_ad85),
+                (1200.0, 0x84_9b76),
+                (1900.0, 0x7d_9173),
             ]),
-            rock: Ramp::new(&[(500.0, 0xb3_a48c), (1800.0, 0xb1_a595), (3200.0, 0xb6_aea6)]),
+            rock: Ramp::new(&[(500.0, 0xb4_a794), (1800.0, 0xa8_a29b), (3200.0, 0xa9_a6a6)]),
             scree: linear(0xc8_bfae),
-            snow: linear(0xfb_fbf9),
+            snow: linear(0xef_f1f2),
             water_meadow: linear(0xb4_c69c),
             shallow: linear(0x9f_c4cf),
             deep: linear(0x4f_86a3),
@@ -53,12 +54,14 @@ impl Palette {
     pub(super) fn land(&self, at: (f32, f32), height: f32, floodplain: f32, spot: &Spot) -> Vec3 {
         let (east, north) = at;
         let broad = noise::fractal(east / 5200.0, north / 5200.0, 3, 11);
-        let fine = noise::fractal(east / 900.0, north / 900.0, 3, 23);
+        let fine = noise::fractal(east / 1100.0, north / 1100.0, 3, 23);
         let border = 0.6 * broad + 0.4 * fine;
         let slope = spot.steepness;
 
         // Hypsometric tints, with borders that wander.
-        let mut colour = self.open.at(height + 140.0 * border);
+        let mut colour = self
+            .open
+            .at(height + (40.0 + 0.1 * height.clamp(0.0, 1000.0)) * border);
 
         // The plains: a quilt of fields.
         let plain = 1.0 - smoothstep(0.05, 0.16, spot.form_steepness + 0.3 * slope);
@@ -83,7 +86,7 @@ impl Palette {
         let tree_line = 1850.0 - 130.0 * spot.northness + 190.0 * border;
         let below = 1.0 - smoothstep(tree_line - 260.0, tree_line + 60.0, height);
         let rooted = smoothstep(0.07, 0.26, slope) * (1.0 - smoothstep(0.85, 1.25, slope));
-        let patch = smoothstep(0.28, 0.62, 0.75 * broad + 0.55 * fine + 0.15 * meadow) * 0.75;
+        let patch = smoothstep(0.15, 0.75, 0.75 * broad + 0.40 * fine + 0.15 * meadow) * 0.55;
         let clearing = smoothstep(
             -0.75,
             0.05,
@@ -94,7 +97,7 @@ impl Palette {
 
         // Scree below, rock where nothing holds.
         let alpine = smoothstep(1500.0, 2300.0, height + 260.0 * border);
-        let scree = alpine * smoothstep(0.38, 0.62, slope + 0.12 * fine) * 0.75;
+        let scree = alpine * smoothstep(0.42, 0.66, slope + 0.12 * fine) * 0.6;
         colour = colour.lerp(self.scree, scree);
         let bare = smoothstep(
             0.74 - 0.20 * alpine,
@@ -105,7 +108,7 @@ impl Palette {
         colour = colour.lerp(self.rock.at(height) * grain, bare * (0.55 + 0.45 * alpine));
 
         // Snow: high, in the shade lower, in hollows lower, not on faces it slides from.
-        let snow_line = 2750.0 - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
+        let snow_line = 2900.0 - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
         let lies = smoothstep(snow_line - 130.0, snow_line + 330.0, height);
         let slides = smoothstep(0.80, 1.15, slope + 0.08 * fine);
         colour.lerp(self.snow, lies * (1.0 - 0.85 * slides))
@@ -118,7 +121,7 @@ impl Palette {
 
     /// The colour seen through the air above low land: `height_share` 0 in the plains, 1 at the summits.
     pub(super) fn through_air(&self, colour: Vec3, height_share: f32) -> Vec3 {
-        let thickness = 0.20 * (1.0 - height_share) * (1.0 - height_share);
+        let thickness = 0.13 * (1.0 - height_share) * (1.0 - height_share);
         colour.lerp(self.haze, thickness)
     }
 }

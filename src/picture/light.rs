@@ -26,10 +26,10 @@ const SKY_DIRECTIONS: usize = 12;
 const SKY_PIXELS: usize = 700_000;
 
 /// Colours of light. Flat open ground receives exactly white.
-const SUN: Vec3 = Vec3::new(1.0, 0.935, 0.80);
-const SKY: Vec3 = Vec3::new(0.62, 0.76, 1.0);
+const SUN: Vec3 = Vec3::new(1.0, 0.93, 0.77);
+const SKY: Vec3 = Vec3::new(0.50, 0.69, 1.0);
 /// Share of the light on flat ground that comes from the sun.
-const SUN_SHARE: f32 = 0.60;
+const SUN_SHARE: f32 = 0.66;
 
 /// The shape of the land as light and land cover see it. All heights are in pixels, exaggerated.
 pub(super) struct Relief {
@@ -72,14 +72,14 @@ impl Relief {
         let mut ground = metres.clone();
         let scale = exaggeration / metres_per_pixel;
         ground.data.par_iter_mut().for_each(|z| *z *= scale);
-        let ground = ground.blurred(if spacing > 1.0 { 0.38 * spacing } else { 0.0 });
+        let ground = ground.blurred(if spacing > 1.0 { 0.22 * spacing } else { 0.0 });
         let slopes = ground.blurred((0.9 * spacing).max(2.0));
         let forms = ground.blurred((2200.0 / metres_per_pixel).max(2.0 * spacing));
         let towards_sun = horizon(&ground, SUN_AZIMUTH);
         let pixels = ground.data.len();
         let skip = ((pixels as f64 / SKY_PIXELS as f64).sqrt().ceil() as usize).max(1);
         let sky = sky_view(&every(&ground, skip), SKY_DIRECTIONS);
-        let gully_wavelength = 2.4 * spacing;
+        let gully_wavelength = 2.0 * spacing;
         Self {
             ground,
             slopes,
@@ -113,10 +113,9 @@ impl Relief {
             furrow = depth;
         }
 
-        // Gentle land is lit as if it were a little steeper, as draughtsmen do: contrast, not height.
-        let gentle = 1.0 + 2.6 * (1.0 - smoothstep(0.0, 0.16, length(form) + 0.6 * steep));
+        let gentle = lowland_gain(length(form) + 0.5 * steep);
         let lit = (slope.0 * gentle, slope.1 * gentle);
-        let direct = 0.72 * sun_on(lit) + 0.28 * sun_on((form.0 * gentle * 1.3, form.1 * gentle * 1.3));
+        let direct = 0.74 * sun_on(lit) + 0.26 * sun_on((form.0 * gentle * 1.3, form.1 * gentle * 1.3));
 
         let i = y * self.ground.width + x;
         let shadow = 1.0 - smoothstep(PENUMBRA.0, PENUMBRA.1, self.towards_sun.data[i]);
@@ -126,18 +125,18 @@ impl Relief {
             .sample((x as f32 + 0.5) / skip - 0.5, (y as f32 + 0.5) / skip - 0.5);
         let up = 1.0 / (1.0 + slope.0 * slope.0 + slope.1 * slope.1).sqrt();
 
-        let sun = direct / SUN_ELEVATION.sin() * (0.25 + 0.75 * shadow);
-        let dome = sky * sky * (0.55 + 0.45 * up);
+        let sun = direct / SUN_ELEVATION.sin() * (0.40 + 0.60 * shadow);
+        let dome = sky * sky * (0.5 + 0.5 * up);
         let white = SUN * SUN_SHARE + SKY * (1.0 - SUN_SHARE);
         let light = (SUN * (SUN_SHARE * sun) + SKY * ((1.0 - SUN_SHARE) * dome)) / white;
         // Low land is seen through more air: its lights and shadows are weaker.
-        let contrast = 0.80 + 0.28 * height_share;
+        let contrast = 0.92 + 0.22 * height_share;
         let light = Vec3::ONE + (light - Vec3::ONE) * contrast;
 
         let true_steepness = length(slope) / self.exaggeration;
         let bend = self.ground.data[i] - self.slopes.data[i];
         Spot {
-            light: light.max(Vec3::splat(0.06)),
+            light: shoulder(light.max(Vec3::splat(0.06))),
             steepness: true_steepness,
             form_steepness: length(form) / self.exaggeration,
             northness: if steep > 1e-6 {
@@ -154,10 +153,13 @@ impl Relief {
     fn gullies(&self, x: usize, y: usize, down: (f32, f32), steep: f32) -> ((f32, f32), f32) {
         let mut direction = (-down.0 / steep, -down.1 / steep);
         let mut wavelength = self.gully_wavelength;
-        let mut strength = 0.55 * steep.min(1.0) * smoothstep(0.06, 0.35, steep);
-        let (mut carved, mut profile, mut share) = ((0.0, 0.0), 0.0, 0.6);
         // Lattice coordinates with y to the north, as directions have it.
         let (east, north) = (x as f32, -(y as f32));
+        // Some slopes are carved, others smooth.
+        let reach = 5.0 * wavelength;
+        let carving = 0.55 + 0.45 * noise::value(east / reach, north / reach, 0x51);
+        let mut strength = 0.55 * carving * steep.min(1.0) * smoothstep(0.08, 0.40, steep);
+        let (mut carved, mut profile, mut share) = ((0.0, 0.0), 0.0, 0.6);
         for generation in 0..3 {
             if wavelength < 2.5 {
                 break;
@@ -223,6 +225,21 @@ fn sun_on(slope: (f32, f32)) -> f32 {
     let (west, north) = (n2 / steep2, e2 / steep2);
     let oblique = (west * towards(-1.0, 0.0) + north * towards(0.0, 1.0)) / (west + north);
     0.72 * sun + 0.28 * oblique
+}
+
+/// Factor by which slopes of some steepness are lit steeper than they are, as draughtsmen do in the lowlands: nine
+/// where it is almost flat, none in the mountains. `s (1 + 8/(1 + s²))` is the strongest such curve that still
+/// never lights a steeper slope less.
+fn lowland_gain(steepness: f32) -> f32 {
+    const TURN: f32 = 0.018;
+    let s = steepness / TURN;
+    1.0 + 8.0 / (1.0 + s * s)
+}
+
+/// Light above that on flat ground is pressed together, so that snow in the sun keeps its form.
+fn shoulder(light: Vec3) -> Vec3 {
+    let over = (light - Vec3::ONE).max(Vec3::ZERO);
+    light - over + over / (Vec3::ONE + 1.6 * over)
 }
 
 fn length(v: (f32, f32)) -> f32 {

@@ -31,7 +31,7 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
         spacing,
         style.vertical_exaggeration as f32,
     );
-    let lakes = Lakes::new(surface, &ground, spacing);
+    let lakes = Lakes::new(surface, width, height, spacing);
     let floodplain = water::floodplain(surface, frame);
     let palette = Palette::new();
     let encoder = Encoder::new();
@@ -61,8 +61,9 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
                 let wet = lakes.cover.data[i];
                 if wet > 0.0 {
                     let still = palette.lake(lakes.depth.data[i]) * (0.75 + 0.25 * spot.sky);
-                    let shore = 1.0 - 0.30 * smoothstep(0.0, 0.5, wet) * (1.0 - smoothstep(0.5, 1.0, wet));
-                    colour = colour.lerp(still, smoothstep(0.35, 0.65, wet)) * shore;
+                    // The shore is where the water covers half; a thin darker line runs along it.
+                    let line = smoothstep(0.36, 0.48, wet) * (1.0 - smoothstep(0.52, 0.68, wet));
+                    colour = colour.lerp(still, smoothstep(0.44, 0.56, wet)) * (1.0 - 0.22 * line);
                 }
                 *pixel = opaque(encoder.encode(palette.through_air(colour, height_share)));
             }

@@ -22,20 +22,15 @@ pub(super) struct Lakes {
 const LEAST_DEPTH: f32 = 0.5;
 
 impl Lakes {
-    /// Water on ground given on the same pixels, known every `spacing` pixels.
-    pub(super) fn new(surface: &Surface, ground: &Field, spacing: f32) -> Self {
-        let mut depth = Field::resampled(&surface.water, ground.width, ground.height);
-        depth
-            .data
-            .par_iter_mut()
-            .zip(&ground.data)
-            .for_each(|(water, ground)| *water = (*water - ground).max(0.0));
+    /// Water on `width × height` pixels, known every `spacing` pixels.
+    pub(super) fn new(surface: &Surface, width: usize, height: usize, spacing: f32) -> Self {
+        let depth = Field::resampled(&surface.lake_depth, width, height);
         let mut cover = depth.clone();
         cover
             .data
             .par_iter_mut()
             .for_each(|depth| *depth = smoothstep(0.0, 2.0 * LEAST_DEPTH, *depth));
-        let cover = cover.blurred((0.4 * spacing).max(0.6));
+        let cover = cover.blurred((0.55 * spacing).max(0.6));
         Self { cover, depth }
     }
 }
@@ -44,7 +39,7 @@ impl Lakes {
 /// (Leopold & Maddock 1953) would make brooks vanish beside streams, so maps flatten it.
 fn drawn_width(drainage: f64) -> f64 {
     let km2 = drainage / (KM * KM);
-    (0.55 * (km2.max(0.1) / 8.0).powf(0.30)).min(5.0)
+    (0.55 * (km2.max(0.1) / 20.0).powf(0.34)).min(5.0)
 }
 
 /// Distance over which a river grows to its width below its source, in pixels of a map 1000 pixels high.

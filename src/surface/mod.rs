@@ -106,8 +106,9 @@ impl Raster {
 pub struct Surface {
     /// Height of the solid ground, metres.
     pub height: Raster,
-    /// Level of standing water, metres: above the ground in lakes, equal to it (or lower) on dry land.
-    pub water: Raster,
+    /// Depth of standing water, metres; 0 on dry land. (A depth, not a level: a level would have to be interpolated
+    /// exactly as the heights are, or slopes would be under water.)
+    pub lake_depth: Raster,
     /// Drainage area, m².
     pub drainage: Raster,
     /// Typical distance between the points the heights come from, metres. Finer detail than this is not in the

@@ -1,10 +1,28 @@
 //! The land: a triangulated irregular network whose heights rise with the uplift and erode under rivers and slides.
+//!
+//! Everything here is written on nodes and their neighbours. [`Tin`] holds those; [`Flow`] routes water, through
+//! [`Lakes`] where there are pits; [`StreamPower`] incises, [`Landslides`] slide; [`Erosion`] makes a step of all three.
+//! [`StartLand`] is the land before the first step, [`TinRaster`] turns nodes into pixels.
 
+mod erosion;
+mod flow;
+mod lakes;
+mod landslide;
+mod priority_flood;
 mod raster;
 mod sampling;
 mod smooth;
+mod start;
+mod stream_power;
 mod tin;
 mod voronoi;
 
+pub use erosion::{Bound, Edges, Erosion, ErosionParams, Forcing, OutOfBounds, StepSums};
+pub use flow::{Flow, Outlets};
+pub use lakes::Lakes;
+pub use landslide::Landslides;
+pub use priority_flood::priority_flood;
 pub use raster::TinRaster;
+pub use start::StartLand;
+pub use stream_power::{Network, StreamPower};
 pub use tin::{Border, Link, MAX_NODES, MIN_POISSON_NODES, NodeId, Tin, TinError};

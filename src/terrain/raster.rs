@@ -164,6 +164,10 @@ impl TinRaster {
         let [a, b, c] = corners;
         let pixel = self.pixel_size();
         let doubled_area = (b - a).perp_dot(c - a);
+        // A needle along the hull may have no area left in double precision, and then no pixels.
+        if doubled_area <= 0.0 {
+            return;
+        }
         let (along_u, along_v) = ((c - b) / doubled_area, (a - c) / doubled_area);
         let rows = self.rows_between(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
         let band_end = first_row + samples.len() / self.width;

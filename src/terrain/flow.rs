@@ -1,0 +1,188 @@
+//! Flow routing: each node's receiver, an order from the outlets upstream, and drainage areas.
+
+use rayon::prelude::*;
+
+use super::lakes::Lakes;
+use super::tin::{NodeId, Tin};
+
+/// Nodes per task of the parallel passes. They are maps without sums, so any cut gives the same bits.
+const CHUNK: usize = 16_384;
+
+/// How water moves over a surface, in vectors that are reused from one call to the next.
+///
+/// * Each node drains to the neighbour of steepest descent; ties go to the smaller [`NodeId`].
+/// * Nodes without a lower neighbour, away from the border, are pits: [`Lakes`] turns their basins' flow towards the
+///   lowest way out.
+/// * Outlets drain to themselves: all border nodes when [`Outlets::Border`], and when [`Outlets::Lowest`] those
+///   where no neighbour is lower or where a lake spills over the border.
+///
+/// Cost is linear in the nodes, plus a sort of the passes between inner basins where there are any.
+#[derive(Clone, Debug, Default)]
+pub struct Flow {
+    receivers: Vec<NodeId>,
+    order: Vec<NodeId>,
+    drainage: Vec<f64>,
+    /// Donors that have not yet passed their water on, while the order is made.
+    pending: Vec<u32>,
+    lakes: Lakes,
+}
+
+/// Which border nodes are outlets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outlets {
+    /// Every border node.
+    Border,
+    /// Only those border nodes that have no lower neighbour, or that a lake spills over.
+    Lowest,
+}
+
+impl Flow {
+    /// Memory for a TIN; nothing is routed yet.
+    pub fn new(tin: &Tin) -> Self {
+        let n = tin.len();
+        Self {
+            receivers: vec![NodeId(0); n],
+            order: vec![NodeId(0); n],
+            drainage: vec![0.0; n],
+            pending: vec![0; n],
+            lakes: Lakes::default(),
+        }
+    }
+
+    /// Routes water over heights `z` (m). `rain` scales what falls on each node's cell; none means 1 everywhere.
+    ///
+    /// # Panics
+    /// If a slice does not hold one value per node. Heights that are not finite are no reason to panic.
+    pub fn route(&mut self, tin: &Tin, z: &[f64], outlets: Outlets, rain: Option<&[f64]>) {
+        assert_eq!(z.len(), tin.len(), "one height per node");
+        self.descend(tin, z, outlets);
+        self.lakes.resolve(tin, z, &mut self.receivers);
+        self.rain_on(tin, rain);
+        self.accumulate();
+    }
+
+    /// Receivers by steepest descent.
+    fn descend(&mut self, tin: &Tin, z: &[f64], outlets: Outlets) {
+        self.receivers
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, receivers)| {
+                let first = chunk * CHUNK;
+                for (node, receiver) in (first..).map(NodeId::new).zip(receivers) {
+                    *receiver = if outlets == Outlets::Border && tin.is_border(node) {
+                        node
+                    } else {
+                        steepest_below(tin, z, node, 0.0).unwrap_or(node)
+                    };
+                }
+            });
+    }
+
+    fn rain_on(&mut self, tin: &Tin, rain: Option<&[f64]>) {
+        match rain {
+            None => self.drainage.copy_from_slice(tin.areas()),
+            Some(rain) => {
+                assert_eq!(rain.len(), tin.len(), "one rain factor per node");
+                for (drainage, (area, rain)) in self.drainage.iter_mut().zip(tin.areas().iter().zip(rain)) {
+                    *drainage = area * rain;
+                }
+            }
+        }
+    }
+
+    /// Order and drainage in one sweep: from each source downstream, as long as all donors of the next node have
+    /// passed on their water. Short walks between memory neighbours, and no list of donors.
+    fn accumulate(&mut self) {
+        self.pending.fill(0);
+        for (i, receiver) in self.receivers.iter().enumerate() {
+            self.pending[receiver.index()] += u32::from(receiver.index() != i);
+        }
+        // The sweep meets donors before receivers; the order runs the other way.
+        let mut slots = self.order.iter_mut().rev();
+        for source in 0..self.receivers.len() {
+            let mut i = source;
+            while self.pending[i] == 0 {
+                // Never zero again.
+                self.pending[i] = u32::MAX;
+                if let Some(slot) = slots.next() {
+                    *slot = NodeId::new(i);
+                }
+                let receiver = self.receivers[i].index();
+                if receiver == i {
+                    break;
+                }
+                self.drainage[receiver] += self.drainage[i];
+                self.pending[receiver] -= 1;
+                i = receiver;
+            }
+        }
+    }
+
+    /// Where each node's water goes; outlets name themselves.
+    pub fn receivers(&self) -> &[NodeId] {
+        &self.receivers
+    }
+
+    /// Where a node's water goes; none at outlets.
+    pub fn receiver(&self, node: NodeId) -> Option<NodeId> {
+        let receiver = self.receivers[node.index()];
+        (receiver != node).then_some(receiver)
+    }
+
+    /// Every node once, each after its receiver.
+    pub fn order(&self) -> &[NodeId] {
+        &self.order
+    }
+
+    /// Drainage area of each node, its own cell included, m² (times the rain factor).
+    pub fn drainage(&self) -> &[f64] {
+        &self.drainage
+    }
+
+    /// The lakes of the surface that was routed.
+    pub fn lakes(&self) -> &Lakes {
+        &self.lakes
+    }
+
+    /// Checks that the order holds each node once and after its receiver, and that all water leaves at the border.
+    ///
+    /// # Errors
+    /// What is broken, in words.
+    pub fn sanity_check(&self, tin: &Tin) -> Result<(), String> {
+        let mut place = vec![usize::MAX; tin.len()];
+        for (k, node) in self.order.iter().enumerate() {
+            if place[node.index()] != usize::MAX {
+                return Err(format!("{node:?} is twice in the order"));
+            }
+            place[node.index()] = k;
+        }
+        for node in tin.nodes() {
+            match self.receiver(node) {
+                None if !tin.is_border(node) => return Err(format!("{node:?} ends its river inland")),
+                Some(receiver) if place[receiver.index()] >= place[node.index()] => {
+                    return Err(format!("{node:?} comes before its receiver {receiver:?}"));
+                }
+                Some(receiver) if !tin.neighbours(node).any(|k| k == receiver) => {
+                    return Err(format!("{node:?} drains to {receiver:?}, which is no neighbour"));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The neighbour towards which the descent is steepest, if it is steeper than `slope` (≥ 0); ties go to the smaller id.
+pub(super) fn steepest_below(tin: &Tin, z: &[f64], node: NodeId, slope: f64) -> Option<NodeId> {
+    let height = z[node.index()];
+    let mut steepest = slope;
+    let mut found = None;
+    for link in tin.links(node) {
+        let descent = (height - z[link.to.index()]) * f64::from(link.inverse_distance);
+        if descent > steepest || (descent == steepest && found.is_some_and(|other| link.to < other)) {
+            steepest = descent;
+            found = Some(link.to);
+        }
+    }
+    found
+}
