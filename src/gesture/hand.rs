@@ -15,94 +15,15 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::contact::{Contact, ContactEvent, ContactKey, InputFrame, Side};
-use super::event::{HandEvent, HandId, Leg};
+use super::contact::{Contact, ContactEvent, ContactKey, InputFrame};
+use super::event::{HandEvent, HandId};
 use super::grouping::{self, Standing};
 use super::leg::{self, Arrow};
 use super::params::{GestureParams, MAX_FINGERS, micros};
 use super::rigid::RigidFit;
+use super::stage::{Hand, Stage};
 use super::stroke::{Role, StrokeEvent, StrokeId, StrokeTracker};
-
-/// What became of the contacts of a session.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ContactStats {
-    /// Contacts that went down.
-    pub total: u64,
-    /// Hands, counting what hands fell apart into.
-    pub hands: u64,
-    /// Legs that hands dragged.
-    pub pushes: u64,
-    /// Hands that rested.
-    pub rests: u64,
-    /// Hands that tapped.
-    pub taps: u64,
-    /// Hands that fell apart.
-    pub splits: u64,
-    /// Contacts taken for palms, sleeves or ghosts, or withdrawn by their source.
-    pub dropped_ghosts: u64,
-    /// Those of them that had acted, so that what they did was undone.
-    pub retracted: u64,
-    /// Events of contacts that were not down, or with coordinates that are no place.
-    pub ignored: u64,
-    /// Downs of contacts that were down.
-    pub doubled: u64,
-    /// Contacts that went on with the stroke of another, which had flickered.
-    pub bridged: u64,
-    /// Contacts that were stuck.
-    pub stuck: u64,
-    /// Downs beyond [`super::contact::MAX_CONTACTS`].
-    pub over_cap: u64,
-}
-
-/// A hand as it is now, for drawing. Table millimetres.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HandView {
-    /// The hand.
-    pub hand: HandId,
-    /// The side of the table it belongs to.
-    pub side: Side,
-    /// Where the fingers are that are down.
-    pub fingers: Vec<DVec2>,
-    /// What it does.
-    pub doing: Doing,
-}
-
-/// What a hand does.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Doing {
-    /// Too soon to tell.
-    Touching,
-    /// It anchors a plate.
-    Resting,
-    /// It pushes.
-    Pushing {
-        /// The leg.
-        leg: Leg,
-        /// Where the fingers were when the leg began, as in [`HandEvent::Push`].
-        starts: Vec<DVec2>,
-        /// The motion.
-        fit: RigidFit,
-    },
-}
-
-#[derive(Clone, Debug)]
-struct Hand {
-    side: Side,
-    since_us: u64,
-    arrows: Vec<Arrow>,
-    stage: Stage,
-    /// Legs begun.
-    legs: u32,
-}
-
-#[derive(Clone, Debug)]
-enum Stage {
-    Touching,
-    /// True once the world has been told where the fingers are.
-    Resting(bool),
-    /// The fit that the world was told last.
-    Pushing(Option<(Vec<DVec2>, RigidFit)>),
-}
+pub use super::view::{ContactStats, Doing, HandView};
 
 /// Turns contacts into what hands do. Equal frames and ticks give equal events, to the bit; how the frames of a tick
 /// are fed, how contacts are ordered within one and what ids they have makes no difference but to the ids.
@@ -201,20 +122,7 @@ impl HandTracker {
 
     /// The hands that are down, by id.
     pub fn hands(&self) -> impl Iterator<Item = HandView> {
-        self.hands.iter().map(|(&id, hand)| HandView {
-            hand: id,
-            side: hand.side,
-            fingers: hand.fingers_down().map(|(_, arrow)| arrow.now).collect(),
-            doing: match hand.stage {
-                Stage::Touching => Doing::Touching,
-                Stage::Resting(_) => Doing::Resting,
-                Stage::Pushing(_) => Doing::Pushing {
-                    leg: hand.leg(id),
-                    starts: hand.starts(),
-                    fit: leg::fit(&hand.arrows),
-                },
-            },
-        })
+        self.hands.iter().map(|(&id, hand)| hand.view(id))
     }
 
     /// The contacts that are down, what each is taken for, and the hand of those that are fingers.
@@ -333,6 +241,11 @@ impl HandTracker {
         let standing: Vec<Standing> = self
             .hands
             .iter()
+            // Nobody joins a hand that is leaving.
+            .filter(|(_, hand)| {
+                hand.fingers_down()
+                    .any(|(stroke, _)| !self.strokes.is_lifting(stroke))
+            })
             .map(|(&hand, state)| Standing {
                 hand,
                 fingers: state
@@ -345,20 +258,17 @@ impl HandTracker {
         let places: Vec<DVec2> = landings.iter().map(|landing| landing.1).collect();
         for group in grouping::group(&self.params, self.size_mm, &places, &standing) {
             let id = group.hand.unwrap_or_else(|| self.new_hand());
-            let hand = self.hands.entry(id).or_insert_with(|| Hand {
-                side: Side::North,
-                since_us: self.t_us,
-                arrows: Vec::new(),
-                stage: Stage::Touching,
-                legs: 0,
-            });
+            let hand = self
+                .hands
+                .entry(id)
+                .or_insert_with(|| Hand::new(self.t_us, Vec::new()));
             for &i in &group.landings {
                 let (stroke, at) = landings[i];
                 hand.join(stroke, at);
                 self.owners.insert(stroke, id);
             }
             if matches!(hand.stage, Stage::Touching) {
-                hand.side = hand.side_of(self.size_mm);
+                hand.take_side(self.size_mm);
             }
         }
     }
@@ -432,9 +342,11 @@ impl HandTracker {
             // Right at the limit, rounding may find the hand apart and its clusters together.
             return;
         }
-        let pick =
-            |indices: &[usize]| -> Vec<Arrow> { indices.iter().map(|&i| hand.arrows[i].clone()).collect() };
-        let motions: Vec<f64> = clusters.iter().map(|c| leg::motion(&pick(c)).0).collect();
+        let parts: Vec<Vec<Arrow>> = clusters
+            .iter()
+            .map(|cluster| cluster.iter().map(|&i| hand.arrows[i].clone()).collect())
+            .collect();
+        let motions: Vec<f64> = parts.iter().map(|part| leg::motion(part).0).collect();
         let first_best = |better: fn(f64, f64) -> bool| {
             (1..motions.len()).fold(0, |best, i| {
                 if better(motions[i], motions[best]) {
@@ -450,7 +362,6 @@ impl HandTracker {
             Stage::Touching => 0,
         };
         let since_us = hand.since_us;
-        let parts: Vec<Vec<Arrow>> = clusters.iter().map(|c| pick(c)).collect();
         self.stats.splits += 1;
         for (i, mut arrows) in parts.into_iter().enumerate() {
             let part = if i == keeper {
@@ -469,14 +380,8 @@ impl HandTracker {
                 for arrow in &mut arrows {
                     arrow.far = arrow.now;
                 }
-                let mut hand = Hand {
-                    side: Side::North,
-                    since_us,
-                    arrows,
-                    stage: Stage::Touching,
-                    legs: 0,
-                };
-                hand.side = hand.side_of(self.size_mm);
+                let mut hand = Hand::new(since_us, arrows);
+                hand.take_side(self.size_mm);
                 hand.fingers_changed();
                 self.hands.insert(part, hand);
                 part
@@ -512,22 +417,13 @@ impl HandTracker {
         }
         match hand.stage {
             Stage::Touching => {
-                let tap = HandEvent::Tap {
-                    hand: id,
-                    side: hand.side,
-                    fingers: hand.arrows.iter().map(|arrow| arrow.landed).collect(),
-                };
+                let tap = hand.tap(id);
                 self.stats.taps += 1;
                 self.say(id, tap);
             }
             Stage::Resting(told) => {
                 if !told {
-                    let fingers = hand.arrows.iter().map(|arrow| arrow.now).collect();
-                    let rest = HandEvent::Rest {
-                        hand: id,
-                        side: hand.side,
-                        fingers,
-                    };
+                    let rest = hand.rest(id);
                     self.say(id, rest);
                 }
                 self.say(id, HandEvent::Lift { hand: id });
@@ -566,27 +462,19 @@ impl HandTracker {
                 hand.stage = Stage::Resting(false);
                 self.stats.rests += 1;
             }
-            let event = match &mut hand.stage {
-                Stage::Resting(told) if !*told => {
-                    *told = true;
-                    let fingers = hand.fingers_down().map(|(_, arrow)| arrow.now).collect();
-                    HandEvent::Rest {
-                        hand: id,
-                        side: hand.side,
-                        fingers,
-                    }
+            let event = match &hand.stage {
+                Stage::Resting(false) => {
+                    hand.stage = Stage::Resting(true);
+                    hand.rest(id)
                 }
                 Stage::Pushing(told) => {
-                    let now = (
-                        hand.arrows.iter().map(|a| a.start).collect(),
-                        leg::fit(&hand.arrows),
-                    );
+                    let now = (hand.starts(), leg::fit(&hand.arrows));
                     if told.as_ref() == Some(&now) {
                         continue;
                     }
                     hand.push(id, now)
                 }
-                Stage::Touching | Stage::Resting(_) => continue,
+                Stage::Touching | Stage::Resting(true) => continue,
             };
             self.say(id, event);
         }
@@ -612,75 +500,5 @@ impl HandTracker {
         self.outbox.sort_by_key(|(id, _)| *id);
         events.extend(self.outbox.drain(..).map(|(_, event)| event));
         events
-    }
-}
-
-impl Hand {
-    fn fingers_down(&self) -> impl Iterator<Item = (StrokeId, &Arrow)> {
-        self.arrows
-            .iter()
-            .filter_map(|arrow| arrow.stroke.map(|stroke| (stroke, arrow)))
-    }
-
-    fn starts(&self) -> Vec<DVec2> {
-        self.arrows.iter().map(|arrow| arrow.start).collect()
-    }
-
-    fn leg(&self, hand: HandId) -> Leg {
-        Leg {
-            hand,
-            index: self.legs.saturating_sub(1),
-        }
-    }
-
-    /// The side that the middle of its landing places is on.
-    fn side_of(&self, size_mm: DVec2) -> Side {
-        let middle = self.arrows.iter().map(|arrow| arrow.landed).sum::<DVec2>() / self.arrows.len() as f64;
-        Side::of(middle, size_mm)
-    }
-
-    /// A finger joins. If the hand drags, its start is where the plate would have carried it from.
-    fn join(&mut self, stroke: StrokeId, at: DVec2) {
-        let mut arrow = Arrow::new(stroke, at);
-        if matches!(self.stage, Stage::Pushing(_)) {
-            arrow.start = leg::fit(&self.arrows).motion.apply_inverse(at);
-            arrow.far = leg::far_fit(&self.arrows).motion.apply(arrow.start);
-        }
-        if self.arrows.len() == MAX_FINGERS {
-            // A finger lands where one has lifted: the nearest lifted arrow makes room.
-            let lifted = self.arrows.iter().enumerate().filter(|(_, a)| a.stroke.is_none());
-            let nearest = lifted.min_by(|a, b| a.1.now.distance(at).total_cmp(&b.1.now.distance(at)));
-            if let Some(i) = nearest.map(|(i, _)| i) {
-                self.arrows.remove(i);
-            }
-        }
-        self.arrows.push(arrow);
-        self.fingers_changed();
-    }
-
-    fn fingers_changed(&mut self) {
-        leg::anchor(&mut self.arrows);
-        if let Stage::Resting(told) = &mut self.stage {
-            *told = false;
-        }
-    }
-
-    /// The first leg begins, with the fingers that are down.
-    fn begin(&mut self) {
-        self.arrows.retain(|arrow| arrow.stroke.is_some());
-        self.stage = Stage::Pushing(None);
-        self.legs += 1;
-    }
-
-    /// The event for a fit, which is then the last one told.
-    fn push(&mut self, id: HandId, now: (Vec<DVec2>, RigidFit)) -> HandEvent {
-        let (starts, fit) = now.clone();
-        self.stage = Stage::Pushing(Some(now));
-        HandEvent::Push {
-            leg: self.leg(id),
-            side: self.side,
-            starts,
-            fit,
-        }
     }
 }

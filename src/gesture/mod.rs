@@ -12,14 +12,13 @@ pub mod admission;
 pub mod command;
 pub mod contact;
 pub mod event;
-pub mod expected;
 pub mod file;
 mod grouping;
 pub mod hand;
+pub mod json;
 mod leg;
 pub mod params;
 pub mod rigid;
+mod stage;
 pub mod stroke;
-
-pub use hand::HandTracker;
-pub use params::GestureParams;
+mod view;

@@ -147,6 +147,13 @@ impl StrokeTracker {
         }
     }
 
+    /// True while the finger has lifted, but a flicker may still bridge that.
+    pub fn is_lifting(&self, stroke: StrokeId) -> bool {
+        self.strokes
+            .get(&stroke)
+            .is_some_and(|stroke| stroke.lifted_us.is_some())
+    }
+
     /// From now on the contact acts on nothing, and what it is doing is dropped.
     pub fn ban(&mut self, key: ContactKey) -> Vec<StrokeEvent> {
         if !self.banned.insert(key) {

@@ -8,8 +8,10 @@ use serde_json::{Map, Value};
 use super::reader::{Fault, time_us};
 use super::writer::write_time;
 use super::{FORMAT, VERSION};
-use crate::gesture::command::{MAX_YEARS, Mode, write_number, write_position, write_text};
-use crate::gesture::expected::{Expected, list, number, object, position, text, whole};
+use crate::gesture::command::{MAX_YEARS, Mode};
+use crate::gesture::json::{
+    Expected, list, number, object, position, text, whole, write_number, write_position, write_text,
+};
 
 /// A table's side is shorter than this, mm.
 pub const MAX_SIZE_MM: f64 = 10_000.0;

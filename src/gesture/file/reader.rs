@@ -11,7 +11,7 @@ use crate::gesture::command;
 use crate::gesture::contact::{
     Contact, ContactEvent, ContactKey, InputFrame, MAX_CONTACTS, MAX_COORDINATE_MM, Phase, Source,
 };
-use crate::gesture::expected::{Expected, list, millimetres, number, object, whole};
+use crate::gesture::json::{Expected, list, millimetres, number, object, whole};
 
 /// Most bytes of a line: 256 contacts with all they can have take a tenth of it.
 pub const MAX_LINE_BYTES: usize = 256 * 1024;

@@ -7,10 +7,10 @@ use std::io::{self, Write};
 use super::header::Header;
 use super::reader::GestureFile;
 use crate::gesture::admission::Admission;
-use crate::gesture::command::write_position;
 use crate::gesture::contact::{
     Contact, ContactEvent, ContactKey, InputFrame, MAX_COORDINATE_MM, Phase, quantise_mm,
 };
+use crate::gesture::json::write_position;
 
 /// Writes a gesture file moment by moment, one `write` per line, so that a power cut tears at most the last one.
 ///

@@ -1,4 +1,6 @@
-//! Values from outside: what was expected of a field, and what was found.
+//! Values of gesture files: what is expected of a field, what is found, and how numbers are written.
+
+use std::fmt::Write as _;
 
 use glam::DVec2;
 use serde_json::{Map, Value};
@@ -105,6 +107,26 @@ pub(super) fn position(value: &Value, field: &str) -> Result<DVec2, Expected> {
     }
 }
 
+/// A text as JSON.
+pub(super) fn write_text(out: &mut String, text: &str) {
+    let _ = write!(out, "{}", Value::from(text));
+}
+
+/// A number in the shorter of its two exact forms (`0.5`, `5e6`).
+pub(super) fn write_number(out: &mut String, value: f64) {
+    let (plain, scientific) = (format!("{value}"), format!("{value:e}"));
+    out.push_str(if scientific.len() < plain.len() {
+        &scientific
+    } else {
+        &plain
+    });
+}
+
+/// A table position, mm with two decimals.
+pub(super) fn write_position(out: &mut String, at: DVec2) {
+    let _ = write!(out, "[{:.2},{:.2}]", quantise_mm(at.x), quantise_mm(at.y));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,6 +145,21 @@ mod tests {
         assert_eq!(at("[1.004,-2]"), Ok(DVec2::new(1.0, -2.0)));
         for bad in ["[1]", "[1,2,3]", "[1,\"2\"]", "[1e9,0]", "{}", "null"] {
             assert!(at(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_take_their_shorter_form() {
+        for (value, json) in [
+            (5e6, "5e6"),
+            (0.0, "0"),
+            (0.5, "0.5"),
+            (1209.6, "1209.6"),
+            (1e-30, "1e-30"),
+        ] {
+            let mut out = String::new();
+            write_number(&mut out, value);
+            assert_eq!(out, json);
         }
     }
 }
