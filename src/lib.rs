@@ -1,11 +1,60 @@
-//! Orogen: a multi-touch sculpting table. Each hand is a tectonic plate.
+//! Orogen: a multi-touch sculpting table. Each hand is a tectonic plate; between hands the crust thickens and rises,
+//! and rivers cut it while it grows.
+//!
+//! # The way of the data
+//!
+//! contact → stroke → hand → plate → transport → compression → uplift → TIN erosion → surface → picture.
+//! The modules stand in that order; read from top to bottom, they are the program.
+//!
+//! | module | what it does | what it must not know |
+//! |---|---|---|
+//! | [`units`] | frames and quantities; converts table mm ↔ plan m | anything |
+//! | [`gesture`] | contacts → strokes → hands → rigid fit; the gesture file | worlds, window, clock, files |
+//! | [`mountain`] | plates, transport, compression, fault, uplift, strata of the flat world | window, files, who owns it |
+//! | [`terrain`] | TIN, flow routing with lakes, stream power, landslides | plates, gestures, window |
+//! | [`sim`] | owns the world: tick, parameters, undo, roll-back, quarantine | window, clock, files |
+//! | [`surface`] | what a tick yields for eyes and files: plain data | who made it |
+//! | [`picture`] | surface → relief map | worlds |
+//! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
+//! | [`input`] | recordings of other tools, maps from files | worlds |
+//! | [`report`] | the facts of a run | clock, files |
+//! | [`cli`] | the commands; the only place with a clock, threads and a terminal | |
+//!
+//! # What is absent
+//!
+//! * The core (all but [`cli`]) never names a window, a graphics card, the clock or the environment. The same input
+//!   gives the same bits, for any number of threads; the one seed is in the world.
+//! * [`gesture`], [`mountain`], [`terrain`] and [`sim`] read and write no files.
+//! * Parameters are passed in and never stored in the world, so a snapshot is a clone of plain data.
+//! * The table's y axis points down and is in millimetres; the plan's points north and is in metres. Only [`units`]
+//!   knows both.
+//!
+//! `tests/layers.rs` reads the sources and fails where one of these is broken.
+//!
+//! # Where to step in
+//!
+//! * A stage on the graphics card implements [`mountain::TransportStage`], whose CPU version is the truth.
+//! * A device hands its contacts to [`sim::Sim::feed`] as [`gesture::contact::InputFrame`]s, as a gesture file does.
+//! * Another solver of the land works on [`terrain::Tin`] and [`terrain::Forcing`].
 
 pub mod units;
 
-pub mod export;
 pub mod gesture;
-pub mod input;
+
 pub mod mountain;
-pub mod picture;
-pub mod surface;
+
 pub mod terrain;
+
+pub mod sim;
+
+pub mod surface;
+
+pub mod picture;
+
+pub mod export;
+
+pub mod input;
+
+pub mod report;
+
+pub mod cli;

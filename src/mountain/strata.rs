@@ -42,7 +42,7 @@ impl Strata {
     ///
     /// # Errors
     /// When there is not one rate per interface and node; nothing is changed then.
-    pub fn advance(&mut self, rates: &[&[f32]], years: f64) -> Result<(), StrataError> {
+    pub fn advance(&mut self, rates: &[&[f64]], years: f64) -> Result<(), StrataError> {
         let expected = self.displaced.first().map_or(0, Vec::len);
         let fault = |got| StrataError::Shape {
             expected,
@@ -57,10 +57,15 @@ impl Strata {
         }
         for (displaced, rates) in self.displaced.iter_mut().zip(rates) {
             for (d, &rate) in displaced.iter_mut().zip(*rates) {
-                *d += f64::from(rate) * years;
+                *d += rate * years;
             }
         }
         Ok(())
+    }
+
+    /// How many interfaces there are.
+    pub fn interfaces(&self) -> usize {
+        self.depths.len()
     }
 
     /// Displacement of an interface at each node, metres.

@@ -1,0 +1,463 @@
+//! One tick: hand events → plates → uplift → a step of the land.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use super::rollback::Rollback;
+use super::{SimParams, TICK_US, World};
+use crate::gesture::contact::{ContactKey, InputFrame, Side};
+use crate::gesture::event::{HandEvent, Leg};
+use crate::gesture::hand::{ContactStats, HandTracker};
+use crate::mountain::tectonics::TectonicReport;
+use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateState, TectonicField, Tectonics};
+use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets};
+
+/// Numbers that were none, and what became of them. They never reach the land.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Quarantine {
+    /// Nodes whose uplift was not finite and was taken as zero.
+    pub uplift_nodes: u64,
+    /// Steps whose result held a height that was not finite and was thrown away.
+    pub steps: u64,
+}
+
+/// What visitors did that the report counts, beside [`ContactStats`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SessionCounts {
+    /// Pushes, taps and anchors that changed nothing anybody could see.
+    pub dead_touches: u64,
+    /// `do` words that mean nothing in this mode.
+    pub idle_commands: u64,
+    /// Times that undo brought an earlier land back.
+    pub undone: u64,
+    /// Times that a palm's work was taken back.
+    pub rolled_back: u64,
+}
+
+/// What one tick did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Ticks so far.
+    pub tick: u64,
+    /// The geological clock after the tick, years.
+    pub time_yr: f64,
+    /// Erosion steps taken in the tick.
+    pub erosion_steps: u32,
+    /// True when the uplift was computed anew.
+    pub uplift_changed: bool,
+    /// Numbers that were none, in all.
+    pub quarantine: Quarantine,
+}
+
+/// The land before a push, to be brought back by undo.
+#[derive(Debug)]
+pub(super) struct Snapshot {
+    pub(super) side: Side,
+    pub(super) world: World,
+}
+
+/// What moves the land now: which plates do what, and how many domes rise.
+type Drive = (Vec<(PlateId, PlateState)>, usize);
+
+/// What the plates do to the land, as far as it outlives the computation.
+#[derive(Debug)]
+pub(super) struct Uplift {
+    /// m/yr on the grid.
+    pub(super) field: Field,
+    /// m/yr at the nodes.
+    pub(super) at_nodes: Vec<f64>,
+    pub(super) faults: Vec<FaultTrace>,
+    /// What it was computed for.
+    drive: Drive,
+}
+
+/// All that a roll-back must restore.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub(super) world: World,
+    hands: HandTracker,
+    /// Ticks done.
+    tick: u64,
+    /// Model time gone since the last erosion step, years.
+    pub(super) pending_yr: f64,
+    pub(super) paused: bool,
+    pub(super) pace_yr_per_s: f64,
+    pub(super) uplift: Arc<Uplift>,
+    /// Plates have changed since `uplift` was computed.
+    pub(super) stale: bool,
+    pub(super) undo: Vec<Arc<Snapshot>>,
+    /// The uplift that each unfinished push found.
+    found: BTreeMap<Leg, Arc<Uplift>>,
+    pub(super) counts: SessionCounts,
+    quarantine: Quarantine,
+    /// Figures of the last uplift that plates drove.
+    last_motion: Option<TectonicReport>,
+}
+
+/// A session: the world and all that moves it.
+#[derive(Debug)]
+pub struct Sim {
+    pub(super) params: SimParams,
+    pub(super) state: State,
+    /// Frames that wait for their tick.
+    queue: VecDeque<InputFrame>,
+    rollback: Rollback<State>,
+    /// Contacts found out to be none, whatever checkpoint comes back.
+    banned: Vec<ContactKey>,
+    tectonics: Tectonics,
+    /// Scratch of the stages.
+    field: TectonicField,
+    erosion: Erosion,
+    /// The land before the step, for the quarantine.
+    before: Vec<f64>,
+}
+
+impl Sim {
+    /// A session on `world`.
+    pub fn new(world: World, params: SimParams) -> Self {
+        let field = TectonicField::still(world.map.extent(), &params.mountain);
+        let still = Uplift {
+            field: field.uplift.clone(),
+            at_nodes: vec![0.0; world.tin.len()],
+            faults: Vec::new(),
+            drive: Drive::default(),
+        };
+        let state = State {
+            hands: HandTracker::new(params.gesture, world.map.size_mm()),
+            tick: 0,
+            pending_yr: 0.0,
+            paused: false,
+            pace_yr_per_s: params.pace_yr_per_s,
+            uplift: Arc::new(still),
+            stale: false,
+            undo: Vec::new(),
+            found: BTreeMap::new(),
+            counts: SessionCounts::default(),
+            quarantine: Quarantine::default(),
+            last_motion: None,
+            world,
+        };
+        let mut rollback = Rollback::new();
+        rollback.checkpoint(-(TICK_US as i64), &state);
+        Self {
+            erosion: Erosion::new(&state.world.tin),
+            params,
+            state,
+            queue: VecDeque::new(),
+            rollback,
+            banned: Vec::new(),
+            tectonics: Tectonics::default(),
+            field,
+            before: Vec::new(),
+        }
+    }
+
+    /// The world as it is.
+    pub fn world(&self) -> &World {
+        &self.state.world
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &SimParams {
+        &self.params
+    }
+
+    /// Uplift rate at each node as the last step used it, m/yr.
+    pub fn node_uplift(&self) -> &[f64] {
+        &self.state.uplift.at_nodes
+    }
+
+    /// Figures of the last uplift that plates drove; `None` where nobody has pushed.
+    pub fn last_motion(&self) -> Option<TectonicReport> {
+        self.state.last_motion
+    }
+
+    /// Ticks done.
+    pub fn ticks(&self) -> u64 {
+        self.state.tick
+    }
+
+    /// Numbers that were none.
+    pub fn quarantine(&self) -> Quarantine {
+        self.state.quarantine
+    }
+
+    /// True while input waits for its tick.
+    pub fn input_waits(&self) -> bool {
+        !self.queue.is_empty()
+    }
+
+    /// Water over the land as it is: receivers, drainage, lakes.
+    pub fn flow(&self) -> Flow {
+        let (tin, z) = (&self.state.world.tin, &self.state.world.z);
+        let fixed = self.params.erosion.edges == Edges::Fixed;
+        let outlets = if fixed { Outlets::Border } else { Outlets::Lowest };
+        let mut flow = Flow::new(tin);
+        flow.route(tin, z, outlets, None);
+        flow
+    }
+
+    /// What the contacts were.
+    pub fn contact_stats(&self) -> ContactStats {
+        self.state.hands.stats()
+    }
+
+    /// What else is counted.
+    pub fn counts(&self) -> SessionCounts {
+        self.state.counts
+    }
+
+    /// True when nothing moves any more: no input waits, no hand is down, and the world has run on for as long as
+    /// it may.
+    pub fn at_rest(&self) -> bool {
+        self.queue.is_empty() && self.state.hands.hands().next().is_none() && !self.runs()
+    }
+
+    /// Hands over input. It is played in the first tick that is not before its time.
+    pub fn feed(&mut self, frame: InputFrame) {
+        self.queue.push_back(frame);
+    }
+
+    /// One tick of 16 ms session time.
+    pub fn tick(&mut self) -> StepReport {
+        let now_us = self.state.tick * TICK_US;
+        let due = self.queue.partition_point(|frame| frame.t_us <= now_us);
+        let frames: Vec<InputFrame> = self.queue.drain(..due).collect();
+        for frame in &frames {
+            self.rollback.record(frame);
+        }
+        self.play_tick(&frames)
+    }
+
+    /// Takes up to `limit` erosion steps without any input, until the world rests, and calls `progress` after each
+    /// with the model time left, years. `progress` returns false to stop.
+    pub fn run_on(&mut self, mut progress: impl FnMut(&Self, f64) -> bool) {
+        while self.runs() && !self.state.paused {
+            let mut report = self.tick();
+            while report.erosion_steps == 0 && self.runs() {
+                report = self.tick();
+            }
+            let left = self.state.world.last_push_yr + self.params.run_on_yr - self.state.world.time_yr;
+            if !progress(self, left.max(0.0)) {
+                return;
+            }
+        }
+    }
+
+    /// Ends all contacts, as the end of a recording does.
+    pub fn finish_input(&mut self) {
+        let now_us = self.state.tick * TICK_US;
+        let events = self.state.hands.finish(now_us);
+        for event in events {
+            self.apply(&event);
+        }
+    }
+
+    fn runs(&self) -> bool {
+        let world = &self.state.world;
+        world.time_yr < world.last_push_yr + self.params.run_on_yr
+    }
+
+    fn play_tick(&mut self, frames: &[InputFrame]) -> StepReport {
+        let now_us = self.state.tick * TICK_US;
+        for frame in frames {
+            self.state.hands.feed(frame);
+            for command in &frame.commands {
+                self.command(command);
+            }
+        }
+        let events = self.state.hands.tick(now_us);
+        for event in &events {
+            if let HandEvent::Retract { contacts, since_us } = event {
+                if self.roll_back(contacts, *since_us) {
+                    // The ticks up to this one have been played again without those contacts.
+                    return self.report(0, true);
+                }
+                continue;
+            }
+            self.apply(event);
+        }
+        let mut erosion_steps = 0;
+        let mut uplift_changed = false;
+        if !self.state.paused && (self.runs() || self.state.hands.hands().next().is_some()) {
+            self.state.pending_yr += self.state.pace_yr_per_s * (TICK_US as f64 / 1e6);
+            while self.state.pending_yr >= self.params.erosion_dt_yr {
+                self.state.pending_yr -= self.params.erosion_dt_yr;
+                uplift_changed |= self.update_uplift();
+                self.step_land();
+                erosion_steps += 1;
+            }
+        }
+        self.state.tick += 1;
+        if erosion_steps > 0 {
+            self.rollback.checkpoint(now_us as i64, &self.state);
+        }
+        self.report(erosion_steps, uplift_changed)
+    }
+
+    fn report(&self, erosion_steps: u32, uplift_changed: bool) -> StepReport {
+        StepReport {
+            tick: self.state.tick,
+            time_yr: self.state.world.time_yr,
+            erosion_steps,
+            uplift_changed,
+            quarantine: self.state.quarantine,
+        }
+    }
+
+    /// Plays the time since `since_us` again without `contacts`. False when no checkpoint reaches back so far: then
+    /// what they did stays, and they do nothing more.
+    fn roll_back(&mut self, contacts: &[ContactKey], since_us: u64) -> bool {
+        self.banned.extend_from_slice(contacts);
+        let until = self.state.tick;
+        let rewound = self.rollback.rewind(since_us);
+        let Some((state, frames)) = rewound else {
+            for &key in contacts {
+                self.state.hands.ban(key);
+            }
+            return false;
+        };
+        let counts = self.state.counts;
+        self.state = state;
+        self.state.counts.rolled_back = counts.rolled_back + 1;
+        for &key in &self.banned {
+            self.state.hands.ban(key);
+        }
+        let mut frames = frames.into_iter().peekable();
+        while self.state.tick <= until {
+            let now_us = self.state.tick * TICK_US;
+            let mut due = Vec::new();
+            while let Some(frame) = frames.next_if(|frame| frame.t_us <= now_us) {
+                due.push(frame);
+            }
+            self.play_tick(&due);
+        }
+        true
+    }
+
+    fn apply(&mut self, event: &HandEvent) {
+        if let HandEvent::Push { leg, side, .. } = event
+            && !self.state.found.contains_key(leg)
+        {
+            self.remember(*side);
+            self.update_uplift();
+            self.state.found.insert(*leg, Arc::clone(&self.state.uplift));
+        }
+        let world = &mut self.state.world;
+        let applied = world
+            .plates
+            .apply(event, &world.map, world.time_yr, &self.params.mountain);
+        self.state.stale |= applied != Applied::Unchanged;
+        match event {
+            HandEvent::Push { .. } => world.last_push_yr = world.time_yr,
+            HandEvent::Tap { .. } if applied == Applied::Domes(0) => self.state.counts.dead_touches += 1,
+            HandEvent::Tap { .. } => world.last_push_yr = world.time_yr,
+            HandEvent::PushEnd { leg } => self.judge(*leg),
+            HandEvent::Rest { .. } | HandEvent::Lift { .. } | HandEvent::Retract { .. } => {}
+        }
+    }
+
+    /// A finished push that has changed the uplift nowhere is a dead touch.
+    fn judge(&mut self, leg: Leg) {
+        self.update_uplift();
+        let Some(found) = self.state.found.remove(&leg) else {
+            return;
+        };
+        let (now, then) = (&self.state.uplift.field.data, &found.field.data);
+        let change = now
+            .iter()
+            .zip(then)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f32::max);
+        if f64::from(change) < self.params.answer_m_per_yr {
+            self.state.counts.dead_touches += 1;
+        }
+    }
+
+    /// What moves the land now.
+    fn drive(&self) -> Drive {
+        let world = &self.state.world;
+        let doing = world
+            .plates
+            .plates()
+            .iter()
+            .map(|plate| (plate.id, plate.state(world.time_yr)));
+        let years = self.params.mountain.dome_years;
+        let rising = world
+            .plates
+            .domes()
+            .iter()
+            .filter(|dome| world.time_yr < dome.begun_yr + years);
+        (doing.collect(), rising.count())
+    }
+
+    /// Computes the uplift if plates have changed, a push is spent or a dome has risen.
+    fn update_uplift(&mut self) -> bool {
+        let drive = self.drive();
+        if !self.state.stale && drive == self.state.uplift.drive {
+            return false;
+        }
+        let state = &mut self.state;
+        state.stale = false;
+        let world = &state.world;
+        let (extent, params) = (world.map.extent(), &self.params.mountain);
+        self.tectonics
+            .compute_into(&world.plates, extent, world.time_yr, params, &mut self.field);
+        let field = &self.field;
+        let mut at_nodes: Vec<f64> = world
+            .tin
+            .positions()
+            .iter()
+            .map(|&p| field.uplift_at(p))
+            .collect();
+        for rate in at_nodes.iter_mut().filter(|rate| !rate.is_finite()) {
+            *rate = 0.0;
+            state.quarantine.uplift_nodes += 1;
+        }
+        let pushed = drive.0.iter().any(|(_, doing)| *doing == PlateState::Pushing);
+        if pushed {
+            state.last_motion = Some(field.report);
+        }
+        // A fault stays on the map when its push is spent.
+        let faults = if pushed {
+            field.faults.clone()
+        } else {
+            state.uplift.faults.clone()
+        };
+        state.uplift = Arc::new(Uplift {
+            field: field.uplift.clone(),
+            at_nodes,
+            faults,
+            drive,
+        });
+        true
+    }
+
+    /// One erosion step of the land.
+    fn step_land(&mut self) {
+        let state = &mut self.state;
+        let world = &mut state.world;
+        let dt_yr = self.params.erosion_dt_yr;
+        self.before.clone_from(&world.z);
+        let uplift = &state.uplift.at_nodes;
+        let sums = self.erosion.step(
+            &world.tin,
+            &mut world.z,
+            &Forcing::uplift(uplift),
+            &self.params.erosion,
+            dt_yr,
+        );
+        world.time_yr += dt_yr;
+        if world.z.iter().any(|z| !z.is_finite()) {
+            world.z.clone_from(&self.before);
+            state.quarantine.steps += 1;
+            return;
+        }
+        if world.strata.advance(&[uplift], dt_yr).is_err() {
+            state.quarantine.steps += 1;
+        }
+        world.totals.steps += 1;
+        world.totals.uplifted_m3 += sums.uplifted_m3;
+        world.totals.eroded_m3 += sums.fluvial_m3 + sums.landslide_m3;
+    }
+}

@@ -1,0 +1,70 @@
+//! The world: plain state, nothing else.
+
+use std::sync::Arc;
+
+use crate::mountain::PlateSet;
+use crate::mountain::strata::Strata;
+use crate::terrain::{StartLand, Tin, TinError};
+use crate::units::PlanMap;
+
+/// Everything that the land is at one moment. Parameters and scratch memory live elsewhere, so a snapshot is a clone.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// The one seed: nodes and start land follow from it.
+    pub seed: u64,
+    /// How the table lies on the land.
+    pub map: PlanMap,
+    /// The nodes; never changed, so shared by all snapshots.
+    pub tin: Arc<Tin>,
+    /// The geological clock, years since the start.
+    pub time_yr: f64,
+    /// Land surface at each node, metres.
+    pub z: Vec<f64>,
+    /// Displacement of each stratigraphic interface at each node.
+    pub strata: Strata,
+    /// The plates, and what is left of their pushes.
+    pub plates: PlateSet,
+    /// When the last push began or changed, years; the world runs on from there.
+    pub last_push_yr: f64,
+    /// Volumes moved so far.
+    pub totals: Totals,
+}
+
+/// Volumes moved since the start, m³.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Added by uplift (subsidence counts negative).
+    pub uplifted_m3: f64,
+    /// Taken away by rivers and landslides.
+    pub eroded_m3: f64,
+    /// Erosion steps.
+    pub steps: u64,
+}
+
+impl World {
+    /// The land before anybody touched it: 1 m noise on smooth ±150 m hills.
+    ///
+    /// # Errors
+    /// When that many nodes cannot be laid out.
+    pub fn new(map: PlanMap, nodes: usize, seed: u64) -> Result<Self, TinError> {
+        let tin = Arc::new(Tin::poisson(map.extent(), nodes, seed)?);
+        let z = StartLand::new(seed).heights(&tin);
+        let strata = Strata::new(&[0.0], tin.len());
+        Ok(Self {
+            seed,
+            map,
+            tin,
+            time_yr: 0.0,
+            z,
+            strata,
+            plates: PlateSet::default(),
+            last_push_yr: 0.0,
+            totals: Totals::default(),
+        })
+    }
+
+    /// Memory that a snapshot of this world needs, bytes (the shared nodes not counted).
+    pub fn snapshot_bytes(&self) -> usize {
+        size_of_val(self.z.as_slice()) * (1 + self.strata.interfaces())
+    }
+}
