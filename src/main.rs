@@ -1,3 +1,7 @@
 //! The `orogen` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    orogen::cli::main()
+}

@@ -1,0 +1,244 @@
+//! The commands. Everything that touches files, threads, the clock and the terminal is here.
+
+mod bench;
+mod console;
+mod erode;
+mod failure;
+//mod import;
+mod output;
+mod replay;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use console::Console;
+use failure::Failure;
+
+/// Put both hands on the table and push: each hand is a tectonic plate, and between them mountains rise.
+///
+/// Without a command Orogen plays its built-in session into ./orogen-out and names the pictures.
+#[derive(Debug, Parser)]
+#[command(name = "orogen", version, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Say only what went wrong.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Play gesture files (none: the built-in session) through the same code as the table, without a display.
+    Replay(ReplayArgs),
+    /// Erode a terrain in batch: uplift in, eroded land out.
+    Erode(ErodeArgs),
+    /// Turn a recording of another tool (evemu, multi-touch protocol B) into a gesture file.
+    Import(ImportArgs),
+    /// Is this machine fast enough? Every stage at the sizes of the literature.
+    Bench(BenchArgs),
+}
+
+/// Which pictures to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum PictureChoice {
+    /// The relief map.
+    Map,
+    /// No picture.
+    None,
+}
+
+/// What all commands that compute a land have in common.
+#[derive(Debug, Args)]
+struct Common {
+    /// Folder for the results; each run gets a folder of its own in it.
+    #[arg(long, value_name = "DIR", default_value = "orogen-out")]
+    out: PathBuf,
+    /// The one seed of the world (default: the file's, else 1).
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Threads to compute with; the results are the same bits for any number (default: all cores).
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Nodes of the terrain (default: the file's, else 60000).
+    #[arg(long, value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
+    nodes: Option<u32>,
+    /// Pixels along the width of pictures and height maps, such as 1009, 2017, 4033, 8129 or a power of two.
+    #[arg(long, value_name = "N", default_value_t = 1920, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    size: u32,
+    /// Which picture to draw.
+    #[arg(long, value_enum, default_value_t = PictureChoice::Map)]
+    picture: PictureChoice,
+}
+
+#[derive(Debug, Args)]
+struct ReplayArgs {
+    /// Gesture files (*.gesture.jsonl).
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+    /// Model years that the world runs on after the last push (default: the file's, else 5e6).
+    #[arg(long)]
+    years: Option<f64>,
+    /// Use the rules of the paper instead of Orogen's own defaults (no rest weight, tapers or rifts).
+    #[arg(long)]
+    paper: bool,
+    /// Also draw a picture every N erosion steps, into `frames/`.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    every: Option<u32>,
+}
+
+#[derive(Debug, Args)]
+struct ErodeArgs {
+    /// Uplift: a map (EXR in m/yr, or PNG whose white is 1e-3 m/yr), or one number in m/yr for a square map.
+    #[arg(long, value_name = "MAP|U")]
+    uplift: String,
+    #[command(flatten)]
+    common: Common,
+    /// Start surface in metres (EXR, or PNG with the .json that Orogen writes beside its own; otherwise white is
+    /// 6553.5 m). Default: 1 m noise on smooth hills, from the seed.
+    #[arg(long, value_name = "MAP")]
+    start: Option<PathBuf>,
+    /// Width of the map on the ground, km; its height follows from the shape of the maps.
+    #[arg(long, value_name = "WIDTH", default_value_t = 100.0)]
+    km: f64,
+    /// Model years.
+    #[arg(long, default_value_t = 5e6)]
+    years: f64,
+    /// Years in one step.
+    #[arg(long, default_value_t = 50_000.0)]
+    dt: f64,
+    /// Erosion constant k, y⁻¹ for m = 0.5.
+    #[arg(long)]
+    k: Option<f64>,
+    /// Exponent of the drainage area.
+    #[arg(long)]
+    m: Option<f64>,
+    /// Exponent of the slope.
+    #[arg(long)]
+    n: Option<f64>,
+    /// Slope at which hillsides begin to slide, degrees.
+    #[arg(long, value_name = "DEGREES")]
+    talus: Option<f64>,
+    /// Landslides.
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    landslide: Switch,
+    /// Erodibility: a factor on k (EXR, or PNG whose white is 2).
+    #[arg(long, value_name = "MAP")]
+    erodibility: Option<PathBuf>,
+    /// Rain: a factor on the water that falls (EXR, or PNG whose white is 2).
+    #[arg(long, value_name = "MAP")]
+    rain: Option<PathBuf>,
+    /// Protected ground: white is left as it is.
+    #[arg(long, value_name = "MASK")]
+    protect: Option<PathBuf>,
+    /// What the border does.
+    #[arg(long, value_enum, default_value_t = EdgeChoice::Fixed)]
+    edges: EdgeChoice,
+    /// Height of the sea at the border, metres (default: the border keeps the heights of the start surface).
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    base_level: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Switch {
+    On,
+    Off,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EdgeChoice {
+    /// Water leaves across the border, whose height stays.
+    Fixed,
+    /// Water leaves across the border, which rises and is cut like all land.
+    Free,
+}
+
+#[derive(Debug, Args)]
+struct ImportArgs {
+    /// The recording.
+    file: PathBuf,
+    /// The gesture file to write.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Range of the device's coordinates, where the recording does not tell.
+    #[arg(long, value_name = "X0,X1,Y0,Y1", allow_negative_numbers = true)]
+    range: Option<String>,
+    /// Size of the device's surface in millimetres, where the recording does not tell.
+    #[arg(long, value_name = "W,H")]
+    size_mm: Option<String>,
+}
+
+#[derive(Debug, Args)]
+struct BenchArgs {
+    /// JSON lines instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Also a million nodes (about a minute).
+    #[arg(long)]
+    million: bool,
+    /// Threads to compute with (default: all cores).
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// Runs the command line and yields the exit code: 0 done, 2 bad usage or input, 1 anything else.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    let console = Console::new(cli.quiet);
+    let done = match cli.command {
+        None => replay::builtin(console),
+        Some(Command::Replay(args)) => replay::run(&args, console),
+        Some(Command::Erode(args)) => erode::run(&args, console),
+        Some(Command::Import(_)) => Ok(()),
+        Some(Command::Bench(args)) => bench::run(&args, console),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            console.error(&failure.to_string());
+            failure.code()
+        }
+    }
+}
+
+/// Help and version print as they are; a usage error becomes one line.
+fn usage(error: &clap::Error) -> ExitCode {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        return if error.print().is_ok() {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        };
+    }
+    let text = error.to_string();
+    let lines: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more information"))
+        .filter(|line| !line.is_empty())
+        .collect();
+    let line = lines.join(" ");
+    let line = line.strip_prefix("error: ").unwrap_or(&line);
+    Console::new(true).error(&format!("{line} (see `orogen --help`)"));
+    ExitCode::from(2)
+}
+
+/// Runs `work` on a pool of `threads` threads, all cores if `None`.
+fn on_threads<T: Send>(
+    threads: Option<u16>,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.map_or(0, usize::from))
+        .thread_name(|i| format!("orogen-{i}"))
+        .build()
+        .map_err(Failure::other)?;
+    pool.install(work)
+}

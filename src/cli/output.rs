@@ -1,0 +1,285 @@
+//! The files of a computed land, the same for `replay` and `erode`.
+
+use std::collections::BTreeMap;
+use std::io::{self, Cursor, Write};
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use image::ImageFormat;
+use serde::Serialize;
+
+use super::PictureChoice;
+use super::failure::Failure;
+use crate::export::height16::Height16;
+use crate::export::{Mesh, OutDir, exr, geojson, glb, ply};
+use crate::picture::{MapStyle, relief_map};
+use crate::sim::Sim;
+use crate::surface::rivers::{self, FlowGraph, River};
+use crate::surface::{FaultTrace, PlateMark, Raster, Surface};
+use crate::terrain::{Flow, NodeId, Tin, TinRaster};
+use crate::units::KM;
+
+/// Drainage area from which a stream counts as a river in `rivers.geojson`, m².
+const RIVER_AREA: f64 = 10.0 * KM * KM;
+/// Drainage area from which a stream is drawn on the map, m².
+const DRAWN_RIVER_AREA: f64 = 20.0 * KM * KM;
+
+/// How long the parts of a run took.
+#[derive(Debug)]
+pub(super) struct Timings {
+    wall: Instant,
+    cpu: ProcessTime,
+    laps: BTreeMap<String, Lap>,
+}
+
+/// One part of a run.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct Lap {
+    wall_ms: f64,
+    cpu_ms: f64,
+}
+
+impl Timings {
+    pub(super) fn start() -> Self {
+        Self {
+            wall: Instant::now(),
+            cpu: ProcessTime::now(),
+            laps: BTreeMap::new(),
+        }
+    }
+
+    /// Ends a part, and begins the next.
+    pub(super) fn lap(&mut self, name: &str) {
+        let lap = Lap {
+            wall_ms: self.wall.elapsed().as_secs_f64() * 1e3,
+            cpu_ms: self.cpu.elapsed().as_secs_f64() * 1e3,
+        };
+        self.laps.insert(name.to_owned(), lap);
+        self.wall = Instant::now();
+        self.cpu = ProcessTime::now();
+    }
+
+    pub(super) fn finish(self) -> BTreeMap<String, Lap> {
+        self.laps
+    }
+}
+
+/// What stands and lies on the land.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Marks {
+    pub(super) plates: Vec<PlateMark>,
+    pub(super) faults: Vec<FaultTrace>,
+}
+
+/// A land on its nodes, ready to be written.
+pub(super) struct LandFiles<'a> {
+    pub(super) title: &'a str,
+    pub(super) tin: &'a Tin,
+    pub(super) z: &'a [f64],
+    /// m/yr.
+    pub(super) uplift: &'a [f64],
+    /// Water over `z`.
+    pub(super) flow: &'a Flow,
+    /// Stream-power k at each node.
+    pub(super) k: &'a [f64],
+    pub(super) marks: Marks,
+    pub(super) elapsed_yr: f64,
+}
+
+impl LandFiles<'_> {
+    /// Writes picture, height maps, meshes and rivers into `out`, each file whole or not at all.
+    pub(super) fn write(
+        self,
+        out: &OutDir,
+        size: u32,
+        picture: PictureChoice,
+        timings: &mut Timings,
+    ) -> Result<(), Failure> {
+        let raster = TinRaster::new(self.tin, size as usize, rows(self.tin, size));
+        let title = self.title.to_owned();
+        let (tin, z, uplift, flow, k) = (self.tin, self.z, self.uplift, self.flow, self.k);
+        let water = Water::new(&self);
+        let rivers = rivers::trace(water.graph(&self), RIVER_AREA);
+        let uplift_map = raster.linear(uplift);
+        let surface = self.surface(&raster, &water);
+        timings.lap("rasters");
+
+        let map_png = match picture {
+            PictureChoice::None => None,
+            PictureChoice::Map => Some(map_png(&surface, &title)?),
+        };
+        if let Some(png) = &map_png {
+            out.write("picture.png", |w| w.write_all(png))
+                .map_err(Failure::other)?;
+        }
+        timings.lap("picture");
+
+        write_height_maps(out, &surface, &uplift_map)?;
+        timings.lap("height_maps");
+        let mesh = Mesh {
+            positions: tin.positions(),
+            heights: z,
+            triangles: tin.triangles(),
+        };
+        let values = ply::NodeValues {
+            drainage: flow.drainage(),
+            uplift,
+            receivers: &water.receivers,
+            layers: &vec![0; tin.len()],
+            erodibility: k,
+        };
+        out.write("terrain.ply", |w| ply::write(w, mesh, values))
+            .map_err(Failure::other)?;
+        out.write("terrain.glb", |w| {
+            glb::write(w, mesh, tin.extent(), map_png.as_deref())
+        })
+        .map_err(Failure::other)?;
+        write_rivers(out, tin, &rivers)?;
+        timings.lap("meshes");
+        Ok(())
+    }
+
+    fn surface(self, raster: &TinRaster, water: &Water) -> Surface {
+        let field = |data| Raster {
+            width: raster.width(),
+            height: raster.height(),
+            extent: self.tin.extent(),
+            data,
+        };
+        Surface {
+            height: field(raster.smooth(self.tin, self.z)),
+            lake_depth: field(raster.linear(&water.lake_depth)),
+            drainage: field(raster.linear(self.flow.drainage())),
+            spacing: self.tin.spacing(),
+            rivers: rivers::drawn(water.graph(&self), DRAWN_RIVER_AREA),
+            plates: self.marks.plates,
+            faults: self.marks.faults,
+            elapsed_yr: self.elapsed_yr,
+        }
+    }
+}
+
+/// Water as the writers want it.
+struct Water {
+    receivers: Vec<u32>,
+    /// Metres; 0 where it is dry.
+    lake_depth: Vec<f64>,
+    lake: Vec<bool>,
+}
+
+impl Water {
+    fn new(land: &LandFiles<'_>) -> Self {
+        let lakes = land.flow.lakes();
+        let depth = |(i, &z): (usize, &f64)| lakes.level(NodeId::new(i), z) - z;
+        let lake_depth: Vec<f64> = land.z.iter().enumerate().map(depth).collect();
+        Self {
+            receivers: land.flow.receivers().iter().map(|node| node.0).collect(),
+            lake: lake_depth.iter().map(|&depth| depth > 0.0).collect(),
+            lake_depth,
+        }
+    }
+
+    fn graph<'b>(&'b self, land: &'b LandFiles<'_>) -> FlowGraph<'b> {
+        FlowGraph {
+            positions: land.tin.positions(),
+            receivers: &self.receivers,
+            drainage: land.flow.drainage(),
+            lake: &self.lake,
+        }
+    }
+}
+
+/// Rows that make cells square for `columns` columns.
+fn rows(tin: &Tin, columns: u32) -> usize {
+    let extent = tin.extent();
+    ((f64::from(columns) * extent.height / extent.width).round() as usize).max(1)
+}
+
+fn map_png(surface: &Surface, title: &str) -> Result<Vec<u8>, Failure> {
+    let style = MapStyle {
+        title: title.to_owned(),
+        ..MapStyle::default()
+    };
+    let map = relief_map(
+        surface,
+        &style,
+        surface.height.width as u32,
+        surface.height.height as u32,
+    );
+    let mut png = Cursor::new(Vec::new());
+    map.write_to(&mut png, ImageFormat::Png).map_err(Failure::other)?;
+    Ok(png.into_inner())
+}
+
+fn write_height_maps(out: &OutDir, surface: &Surface, uplift: &[f32]) -> Result<(), Failure> {
+    let height = &surface.height;
+    let slope = height.slope();
+    let drainage_km2: Vec<f32> = surface.drainage.data.iter().map(|a| a / 1e6).collect();
+    let channels: [(&str, &[f32]); 4] = [
+        ("height_m", &height.data),
+        ("uplift_m_per_yr", uplift),
+        ("drainage_km2", &drainage_km2),
+        ("slope", &slope.data),
+    ];
+    out.write("height.exr", |w| {
+        exr::write(w, height.width, height.height, &channels)
+    })
+    .map_err(Failure::other)?;
+    let height16 = Height16::new(height).map_err(Failure::other)?;
+    out.write("height16.png", |w| height16.write_png(w))
+        .map_err(Failure::other)?;
+    out.write("height16.r16", |w| height16.write_r16(w))
+        .map_err(Failure::other)?;
+    out.write("height16.json", |w| height16.write_json(w))
+        .map_err(Failure::other)?;
+    Ok(())
+}
+
+fn write_rivers(out: &OutDir, tin: &Tin, rivers: &[River]) -> Result<(), Failure> {
+    out.write("rivers.geojson", |w| {
+        geojson::write_rivers(w, tin.extent(), rivers)
+    })
+    .map(drop)
+    .map_err(Failure::other)
+}
+
+/// Writes `value` as indented JSON with a line end.
+pub(super) fn write_json(out: &OutDir, name: &str, value: &impl Serialize) -> Result<(), Failure> {
+    out.write(name, |w| {
+        serde_json::to_writer_pretty(&mut *w, value).map_err(io::Error::other)?;
+        w.write_all(b"\n")
+    })
+    .map(drop)
+    .map_err(Failure::other)
+}
+
+/// The land of a session, with its plates and faults. `flow` is the water over it, `k` the erosion constant.
+pub(super) fn land_of<'a>(sim: &'a Sim, flow: &'a Flow, k: &'a [f64], title: &'a str) -> LandFiles<'a> {
+    let world = sim.world();
+    LandFiles {
+        title,
+        tin: &world.tin,
+        z: &world.z,
+        uplift: sim.node_uplift(),
+        flow,
+        k,
+        marks: Marks {
+            plates: sim.plate_marks(),
+            faults: sim.fault_traces(),
+        },
+        elapsed_yr: world.time_yr,
+    }
+}
+
+/// Draws the map of a running session into `out` as `name`.
+pub(super) fn draw_frame(out: &OutDir, name: &str, sim: &Sim, title: &str, size: u32) -> Result<(), Failure> {
+    let tin = &sim.world().tin;
+    let raster = TinRaster::new(tin, size as usize, rows(tin, size));
+    let flow = sim.flow();
+    let land = land_of(sim, &flow, &[], title);
+    let water = Water::new(&land);
+    let png = map_png(&land.surface(&raster, &water), title)?;
+    out.write(name, |w| w.write_all(&png))
+        .map(drop)
+        .map_err(Failure::other)
+}

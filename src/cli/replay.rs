@@ -1,0 +1,228 @@
+//! `orogen replay`: gesture files through the same code as the table, without a display.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use indicatif::ProgressBar;
+
+use super::console::Console;
+use super::failure::Failure;
+use super::output::{Timings, draw_frame, land_of, write_json};
+use super::{Common, PictureChoice, ReplayArgs, on_threads};
+use crate::export::OutDir;
+use crate::gesture::command::Mode;
+use crate::gesture::file::{GestureFile, read_gesture};
+use crate::mountain::MountainParams;
+use crate::report::Report;
+use crate::sim::{Sim, SimParams, World};
+use crate::units::{DEFAULT_SHORT_SIDE, PlanMap};
+
+/// The session that plain `orogen` plays where nobody can touch it.
+const BUILTIN: &str = include_str!("../../gestures/builtin_session.gesture.jsonl");
+const BUILTIN_NAME: &str = "builtin_session";
+/// Nodes where neither the file nor the user says a number: what looks like land on a full-screen table.
+const DEFAULT_NODES: u64 = 60_000;
+/// Seed where neither the file nor the user names one.
+const DEFAULT_SEED: u64 = 1;
+/// What all gesture files end with.
+const EXTENSION: &str = ".gesture.jsonl";
+
+/// Plays the built-in session into `./orogen-out`.
+pub(super) fn builtin(console: Console) -> Result<(), Failure> {
+    console.note("playing the built-in session (see `orogen --help` for more)");
+    let args = ReplayArgs {
+        files: Vec::new(),
+        common: Common {
+            out: "orogen-out".into(),
+            seed: None,
+            threads: None,
+            nodes: None,
+            size: 1920,
+            picture: PictureChoice::Map,
+        },
+        years: None,
+        paper: false,
+        every: None,
+    };
+    run(&args, console)
+}
+
+/// Plays all files of `args`, after all of them have been read and found good.
+pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
+    if let Some(years) = args.years
+        && !(0.0..=1e9).contains(&years)
+    {
+        return Err(Failure::input(format!("--years {years}: expected 0 to 1e9")));
+    }
+    let mut sessions = Vec::new();
+    if args.files.is_empty() {
+        let file = read_gesture(BUILTIN.as_bytes(), BUILTIN_NAME).map_err(Failure::input)?;
+        sessions.push((BUILTIN_NAME.to_owned(), file));
+    }
+    for path in &args.files {
+        let stem = stem(path);
+        if sessions.iter().any(|(other, _)| *other == stem) {
+            let path = path.display();
+            return Err(Failure::input(format!(
+                "{path}: a second file named {stem}; replay it by itself"
+            )));
+        }
+        let reader =
+            File::open(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        let file =
+            read_gesture(BufReader::new(reader), &path.display().to_string()).map_err(Failure::input)?;
+        if file.header.mode != Mode::Mountain {
+            let path = path.display();
+            return Err(Failure::input(format!(
+                "{path}: line 1: field mode: this version plays \"mountain\""
+            )));
+        }
+        sessions.push((stem, file));
+    }
+    on_threads(args.common.threads, || {
+        for (stem, file) in &sessions {
+            for warning in &file.warnings {
+                console.warn(warning);
+            }
+            play(stem, file, args, console)?;
+        }
+        Ok(())
+    })
+}
+
+/// The name of a run: the file's, without its folder and endings.
+fn stem(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let stem = name
+        .strip_suffix(EXTENSION)
+        .unwrap_or_else(|| name.split('.').next().unwrap_or(&name));
+    if stem.is_empty() {
+        "session".to_owned()
+    } else {
+        stem.to_owned()
+    }
+}
+
+/// The session of `file`, before its first tick.
+fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
+    let header = &file.header;
+    let nodes = args
+        .common
+        .nodes
+        .map(u64::from)
+        .or(header.nodes)
+        .unwrap_or(DEFAULT_NODES) as usize;
+    let seed = args.common.seed.or(header.seed).unwrap_or(DEFAULT_SEED);
+    let mut params = SimParams::default();
+    if args.paper {
+        params.mountain = MountainParams::paper();
+    }
+    if let Some(years) = args.years.or(header.years) {
+        params.run_on_yr = years;
+    }
+    let map = PlanMap::new(header.size_mm, DEFAULT_SHORT_SIDE);
+    let world = World::new(map, nodes, seed).map_err(Failure::input)?;
+    Ok(Sim::new(world, params))
+}
+
+fn play(stem: &str, file: &GestureFile, args: &ReplayArgs, console: Console) -> Result<(), Failure> {
+    // The folder is tried before the work, so that a bad --out costs no waiting.
+    let out = OutDir::create(args.common.out.join(stem)).map_err(Failure::input)?;
+    let mut timings = Timings::start();
+    let title = file.header.title.clone().unwrap_or_else(|| stem.to_owned());
+    let mut sim = session(file, args)?;
+    timings.lap("start");
+    let mut frames = FrameWriter {
+        every: args.every,
+        out: &out,
+        size: args.common.size,
+        drawn: 0,
+    };
+    for frame in &file.frames {
+        sim.feed(frame.clone());
+    }
+    let bar = console.progress(session_steps(file, &sim), &title);
+    while sim.input_waits() {
+        let report = sim.tick();
+        bar.inc(u64::from(report.erosion_steps));
+        if report.erosion_steps > 0 {
+            frames.draw(&sim, &title)?;
+        }
+    }
+    sim.finish_input();
+    timings.lap("gestures");
+    run_on(&mut sim, &bar, &mut frames, &title)?;
+    bar.finish_and_clear();
+    timings.lap("run_on");
+
+    let flow = sim.flow();
+    let report = Report::of_session(&title, &sim, &flow);
+    let k = vec![sim.params().erosion.k; sim.world().tin.len()];
+    land_of(&sim, &flow, &k, &title).write(&out, args.common.size, args.common.picture, &mut timings)?;
+    write_json(&out, "report.json", &report)?;
+    write_json(&out, "timings.json", &timings.finish())?;
+    if report.quarantine.steps > 0 {
+        console.warn(&format!(
+            "{} steps held numbers that are none and were thrown away",
+            report.quarantine.steps
+        ));
+    }
+    let shown = if args.common.picture == PictureChoice::None {
+        "report.json"
+    } else {
+        "picture.png"
+    };
+    console.result(&out.path().join(shown).display().to_string());
+    Ok(())
+}
+
+/// About how many erosion steps the session will take, for the progress bar.
+fn session_steps(file: &GestureFile, sim: &Sim) -> u64 {
+    let params = sim.params();
+    let seconds = file.frames.last().map_or(0.0, |frame| frame.t_us as f64 / 1e6);
+    ((seconds * params.pace_yr_per_s + params.run_on_yr) / params.erosion_dt_yr) as u64
+}
+
+fn run_on(
+    sim: &mut Sim,
+    bar: &ProgressBar,
+    frames: &mut FrameWriter<'_>,
+    title: &str,
+) -> Result<(), Failure> {
+    let mut failure = None;
+    sim.run_on(|sim, left_yr| {
+        bar.inc(1);
+        let left = (left_yr / sim.params().erosion_dt_yr).ceil() as u64;
+        bar.set_length(bar.position() + left);
+        match frames.draw(sim, title) {
+            Ok(()) => true,
+            Err(error) => {
+                failure = Some(error);
+                false
+            }
+        }
+    });
+    failure.map_or(Ok(()), Err)
+}
+
+/// Draws the pictures of `--every`.
+struct FrameWriter<'a> {
+    every: Option<u32>,
+    out: &'a OutDir,
+    size: u32,
+    drawn: u32,
+}
+
+impl FrameWriter<'_> {
+    fn draw(&mut self, sim: &Sim, title: &str) -> Result<(), Failure> {
+        let Some(every) = self.every else { return Ok(()) };
+        let world = sim.world();
+        if !world.totals.steps.is_multiple_of(u64::from(every)) {
+            return Ok(());
+        }
+        self.drawn += 1;
+        let frames = OutDir::create(self.out.path().join("frames")).map_err(Failure::other)?;
+        draw_frame(&frames, &format!("{:05}.png", self.drawn), sim, title, self.size)
+    }
+}
