@@ -1,0 +1,250 @@
+//! The session as a whole: answers, undo, roll-back, quarantine, determinism.
+
+use glam::DVec2;
+use orogen::gesture::command::{Action, Command};
+use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::sim::{Sim, SimParams, TICK_US, World};
+use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
+
+const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+
+fn sim(nodes: usize) -> Sim {
+    let world = World::new(PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE), nodes, 7).expect("a world");
+    Sim::new(world, SimParams::default())
+}
+
+fn event(phase: Phase, id: u64, position: DVec2) -> ContactEvent {
+    let key = ContactKey {
+        source: Source::File,
+        device: 0,
+        id,
+        generation: 0,
+    };
+    ContactEvent {
+        phase,
+        contact: Contact {
+            key,
+            position,
+            size_mm: None,
+            confidence: None,
+        },
+    }
+}
+
+fn palm(phase: Phase, id: u64, position: DVec2) -> ContactEvent {
+    let mut event = event(phase, id, position);
+    event.contact.confidence = Some(0.0);
+    event
+}
+
+fn frame(t_ms: u64, events: Vec<ContactEvent>) -> InputFrame {
+    InputFrame {
+        t_us: t_ms * 1000,
+        events,
+        commands: Vec::new(),
+    }
+}
+
+/// One finger that moves from `from` by `by` within `ms` from `start_ms` on.
+fn drag(id: u64, from: DVec2, by: DVec2, start_ms: u64, ms: u64) -> Vec<InputFrame> {
+    let mut frames = vec![frame(start_ms, vec![event(Phase::Down, id, from)])];
+    let steps = ms / 16;
+    for step in 1..=steps {
+        let at = from + by * (step as f64 / steps as f64);
+        frames.push(frame(start_ms + step * 16, vec![event(Phase::Move, id, at)]));
+    }
+    frames.push(frame(start_ms + ms + 16, vec![event(Phase::Up, id, from + by)]));
+    frames
+}
+
+fn play(sim: &mut Sim, frames: Vec<InputFrame>, until_ms: u64) {
+    for frame in frames {
+        sim.feed(frame);
+    }
+    while sim.ticks() * TICK_US <= until_ms * 1000 {
+        sim.tick();
+    }
+}
+
+fn difference(a: &Sim, b: &Sim) -> f64 {
+    a.world()
+        .z
+        .iter()
+        .zip(&b.world().z)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn land_answers_while_the_finger_moves() {
+    let (mut touched, mut untouched) = (sim(3000), sim(3000));
+    play(
+        &mut touched,
+        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 100, 800),
+        900,
+    );
+    play(&mut untouched, Vec::new(), 900);
+    assert!(difference(&touched, &untouched) > 5.0, "before the finger lifts");
+    play(&mut touched, Vec::new(), 1900);
+    play(&mut untouched, Vec::new(), 1900);
+    assert!(difference(&touched, &untouched) > 50.0, "a second later");
+    assert_eq!(touched.counts().dead_touches, 0);
+    assert_eq!(touched.contact_stats().pushes, 1);
+}
+
+#[test]
+fn undo_restores_land_and_time_of_the_last_push_of_that_side() {
+    let mut sim = sim(1000);
+    play(&mut sim, Vec::new(), 500);
+    let before = sim.world().clone();
+    // A push in the southern half, then one in the northern half.
+    play(
+        &mut sim,
+        drag(1, DVec2::new(300.0, 550.0), DVec2::new(60.0, 0.0), 520, 400),
+        2000,
+    );
+    let between = sim.world().clone();
+    play(
+        &mut sim,
+        drag(2, DVec2::new(800.0, 120.0), DVec2::new(60.0, 0.0), 2020, 400),
+        3000,
+    );
+    assert!(sim.undo(Some(Side::North)));
+    assert!(sim.world().time_yr >= between.time_yr && sim.world().plates.len() == between.plates.len());
+    assert!(sim.undo(Some(Side::South)));
+    assert_eq!(sim.world().plates.len(), 0);
+    assert!(sim.world().time_yr - before.time_yr < 100_000.0);
+    assert!(!sim.undo(Some(Side::South)), "nothing is left to undo");
+    let undone = InputFrame {
+        t_us: 3_100_000,
+        events: Vec::new(),
+        commands: vec![Command {
+            action: Action::Undo,
+            side: Some(Side::South),
+            contact: None,
+        }],
+    };
+    play(&mut sim, vec![undone], 3200);
+    assert_eq!(sim.counts().idle_commands, 1);
+}
+
+#[test]
+fn a_contact_that_turns_out_to_be_a_sleeve_leaves_no_trace() {
+    let (mut touched, mut untouched) = (sim(2000), sim(2000));
+    let at = |step: u64| DVec2::new(600.0 + 10.0 * step as f64, 340.0);
+    let mut frames = vec![frame(96, vec![event(Phase::Down, 1, at(0))])];
+    for step in 1..12 {
+        frames.push(frame(96 + step * 16, vec![event(Phase::Move, 1, at(step))]));
+    }
+    // Only now does the device say that it is none of a finger's contacts, within 250 ms.
+    frames.push(frame(96 + 12 * 16, vec![palm(Phase::Move, 1, at(12))]));
+    for step in 13..60 {
+        frames.push(frame(96 + step * 16, vec![palm(Phase::Move, 1, at(step))]));
+    }
+    frames.push(frame(96 + 60 * 16, vec![palm(Phase::Up, 1, at(60))]));
+    play(&mut touched, frames, 2000);
+    play(&mut untouched, Vec::new(), 2000);
+    assert_eq!(touched.counts().rolled_back, 1);
+    assert_eq!(touched.world().plates.len(), 0);
+    assert_eq!(difference(&touched, &untouched), 0.0, "to the bit");
+    assert_eq!(touched.ticks(), untouched.ticks());
+}
+
+#[test]
+fn a_paused_world_stands_still() {
+    let mut sim = sim(500);
+    let pause = Command {
+        action: Action::Pause,
+        side: None,
+        contact: None,
+    };
+    play(
+        &mut sim,
+        vec![InputFrame {
+            t_us: 0,
+            events: Vec::new(),
+            commands: vec![pause],
+        }],
+        1000,
+    );
+    assert_eq!(sim.world().time_yr, 0.0);
+    let go = Command {
+        action: Action::Play,
+        side: None,
+        contact: None,
+    };
+    play(
+        &mut sim,
+        vec![InputFrame {
+            t_us: 1_100_000,
+            events: Vec::new(),
+            commands: vec![go],
+        }],
+        2000,
+    );
+    assert!(sim.world().time_yr > 0.0);
+}
+
+#[test]
+fn numbers_that_are_none_never_reach_the_land() {
+    let world = World::new(PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE), 500, 7).expect("a world");
+    let mut params = SimParams::default();
+    params.erosion.k = f64::NAN;
+    let mut sim = Sim::new(world, params);
+    play(
+        &mut sim,
+        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
+        1000,
+    );
+    assert!(sim.quarantine().steps > 0, "the broken steps are counted");
+    assert!(sim.world().z.iter().all(|z| z.is_finite()));
+}
+
+#[test]
+fn the_same_session_gives_the_same_bits_for_any_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a pool");
+        pool.install(|| {
+            let mut sim = sim(5000);
+            let mut frames = drag(1, DVec2::new(300.0, 340.0), DVec2::new(90.0, 20.0), 0, 500);
+            frames.extend(drag(
+                2,
+                DVec2::new(800.0, 300.0),
+                DVec2::new(-90.0, 0.0),
+                600,
+                500,
+            ));
+            play(&mut sim, frames, 2500);
+            sim.world().z.iter().map(|z| z.to_bits()).collect::<Vec<_>>()
+        })
+    };
+    let one = run(1);
+    assert!(one == run(2), "2 threads");
+    assert!(one == run(7), "7 threads");
+}
+
+#[test]
+fn a_world_rests_five_million_years_after_its_last_push() {
+    let mut sim = sim(300);
+    play(
+        &mut sim,
+        drag(1, DVec2::new(600.0, 340.0), DVec2::new(60.0, 0.0), 0, 400),
+        600,
+    );
+    assert!(!sim.at_rest());
+    let mut steps = 0;
+    sim.run_on(|_, _| {
+        steps += 1;
+        true
+    });
+    assert!(sim.at_rest());
+    let since = sim.world().time_yr - sim.world().last_push_yr;
+    assert!((5.0e6..5.1e6).contains(&since), "{since}");
+    assert!(steps > 80);
+    let resting = sim.world().time_yr;
+    sim.tick();
+    assert_eq!(sim.world().time_yr, resting);
+}
