@@ -337,7 +337,7 @@ fn one_slide_has_the_closed_form() {
 /// A disc of nodes in a larger rectangle; its outer part is border, so that clipped cells lie there only.
 fn disc(turn: f64, shift: DVec2) -> Tin {
     let middle = 0.5 * SQUARE.size();
-    let sampled = Tin::poisson(SQUARE, 4000, 11).unwrap();
+    let sampled = Tin::poisson(SQUARE, 4000, 11).expect("a square");
     let inside: Vec<DVec2> = sampled
         .positions()
         .iter()
@@ -351,7 +351,7 @@ fn disc(turn: f64, shift: DVec2) -> Tin {
     };
     let place = |p: &DVec2| DVec2::from_angle(turn).rotate(*p - middle) + middle + shift;
     let nodes: Vec<DVec2> = inside.iter().map(place).collect();
-    Tin::from_nodes(land, &nodes, Border::Flags(&border)).unwrap()
+    Tin::from_nodes(land, &nodes, Border::Flags(&border)).expect("a disc")
 }
 
 #[test]

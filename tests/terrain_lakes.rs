@@ -14,7 +14,7 @@ const SQUARE: Extent = Extent {
 fn route_and_check(tin: &Tin, z: &[f64], outlets: Outlets) -> Flow {
     let mut flow = Flow::new(tin);
     flow.route(tin, z, outlets, None);
-    flow.sanity_check(tin).unwrap();
+    flow.sanity_check(tin).expect("a sane flow");
     let levels = priority_flood(tin, z);
     for node in tin.nodes() {
         let i = node.index();

@@ -179,7 +179,7 @@ fn frozen_tree() -> (Tin, Flow) {
         width: 100.0 * KM,
         height: 100.0 * KM,
     };
-    let tin = Tin::poisson(extent, 3000, 8).unwrap();
+    let tin = Tin::poisson(extent, 3000, 8).expect("a square");
     let middle = 0.5 * extent.size();
     let z: Vec<f64> = tin
         .positions()
