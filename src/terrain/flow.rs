@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::lakes::Lakes;
-use super::tin::{NodeId, Tin};
+use super::tin::{Link, NodeId, Tin};
 
 /// Nodes per task of the parallel passes. They are maps without sums, so any cut gives the same bits.
 const CHUNK: usize = 16_384;
@@ -173,16 +173,26 @@ impl Flow {
 }
 
 /// The neighbour towards which the descent is steepest, if it is steeper than `slope` (≥ 0); ties go to the smaller id.
+#[inline]
 pub(super) fn steepest_below(tin: &Tin, z: &[f64], node: NodeId, slope: f64) -> Option<NodeId> {
     let height = z[node.index()];
-    let mut steepest = slope;
-    let mut found = None;
+    let descent = |link: &Link| (height - z[link.to.index()]) * f64::from(link.inverse_distance);
+    // Which neighbour wins is a coin toss to the processor, so the loop has no branches; ties are rare and wait.
+    let (mut steepest, mut found, mut tie) = (slope, None, false);
     for link in tin.links(node) {
-        let descent = (height - z[link.to.index()]) * f64::from(link.inverse_distance);
-        if descent > steepest || (descent == steepest && found.is_some_and(|other| link.to < other)) {
-            steepest = descent;
-            found = Some(link.to);
-        }
+        let descent = descent(link);
+        let better = descent > steepest;
+        tie |= descent == steepest;
+        found = if better { Some(link.to) } else { found };
+        steepest = if better { descent } else { steepest };
+    }
+    if tie && found.is_some() {
+        found = tin
+            .links(node)
+            .iter()
+            .filter(|link| descent(link) == steepest)
+            .map(|link| link.to)
+            .min();
     }
     found
 }
