@@ -4,7 +4,8 @@
 //! instead: a belt is a spindle across the motion, as long as the hulls face each other and fading over half the gap,
 //! steep above its thrust fault and gentle behind. Its front is bowed towards the fault's foreland in the middle,
 //! where the displacement is largest (the bow-and-arrow rule, Elliott 1976, Phil. Trans. R. Soc. A 283), and never
-//! follows a hull. A belt is a mask between 0 and 1; how fast the ground rises in it comes from `q`.
+//! follows a hull. What `q` says about each cross-section, it keeps: the crust that Eq. 2 piles up between the hulls is
+//! gathered section by section and spread over the belt's profile.
 //!
 //! All weights are smooth functions of the gesture: a belt that begins, ends, or hands over to another one does so
 //! gradually.
@@ -44,33 +45,46 @@ enum Shape {
     Swirl(Swirl),
 }
 
+/// Cross-sections along a spindle in which the thickening is gathered.
+const SECTIONS: usize = 49;
+
 /// A belt across the direction `across`, in a frame with its origin in the middle.
 #[derive(Clone, Debug, PartialEq)]
 struct Spindle {
     origin: DVec2,
-    /// Unit vector along the relative motion, from the low to the high edge.
+    /// Unit vector along the motion, from the low to the high edge.
     across: DVec2,
-    /// Edges along `across` in the middle of the belt, metres from the origin.
+    /// Between these lines across the belt the crust of Eq. 2 thickens for it, metres from the origin.
+    gathers: [f64; 2],
+    /// Edges across the belt in its middle.
     edges: [f64; 2],
     /// Widths over which it rises from those edges.
     flanks: [f64; 2],
-    /// How far each edge draws in towards the ends of the belt.
+    /// How far each edge has drawn in at the ends of the belt.
     bow: [f64; 2],
     /// Half-length along the strike over which it is whole, and the length over which it then fades.
     whole: f64,
     fade: f64,
     /// The fault lies at the high edge (+1), at the low one (−1), or there is none (0).
     fault: f64,
+    /// Thickening in each section, spread over the profile: its height in units of `q − 1`.
+    heights: Vec<f64>,
 }
 
-/// The belts around a body that turns on the spot: before its leading rims, wherever they are.
+/// The belts around a body that turns on the spot. A long body that turns presses the crust together in the two
+/// quadrants ahead of its ends and draws it apart in the other two, as the field of `sin 2φ` about its long axis.
 #[derive(Clone, Debug, PartialEq)]
 struct Swirl {
-    body: MovedBody,
-    /// Largest displacement of its rim, metres.
-    reach: f64,
+    centre: DVec2,
+    /// Azimuth of the long axis.
+    axis: f64,
+    /// Radius of the circle the body turns in, metres.
+    radius: f64,
+    /// Thickening in the middle of a quadrant, in units of `q − 1`.
+    height: f64,
     front_width: f64,
-    rim_offset: f64,
+    /// +1 where the crust is pressed together by a counter-clockwise turn, −1 in the other quadrants.
+    sign: f64,
 }
 
 impl Spindle {
@@ -79,11 +93,13 @@ impl Spindle {
         (d.dot(self.across), self.across.perp_dot(d))
     }
 
-    fn edges_at(&self, along: f64) -> (f64, f64, f64) {
-        let strength = 1.0 - smoother((along.abs() - self.whole) / self.fade);
-        let end = 1.0 - strength;
+    fn half_length(&self) -> f64 {
+        self.whole + self.fade
+    }
+
+    fn edges_at(&self, along: f64) -> (f64, f64) {
+        let end = (along / self.half_length()).powi(2);
         (
-            strength,
             self.edges[0] + self.bow[0] * end,
             self.edges[1] - self.bow[1] * end,
         )
@@ -91,32 +107,77 @@ impl Spindle {
 
     fn mask(&self, p: DVec2) -> f64 {
         let (x, along) = self.local(p);
-        if along.abs() >= self.whole + self.fade || x <= self.edges[0] || x >= self.edges[1] {
+        if along.abs() >= self.half_length() || x <= self.edges[0] || x >= self.edges[1] {
             return 0.0;
         }
-        let (strength, low, high) = self.edges_at(along);
-        strength * smoother((x - low) / self.flanks[0]) * smoother((high - x) / self.flanks[1])
+        let (low, high) = self.edges_at(along);
+        let narrower = (high - low) / (self.edges[1] - self.edges[0]);
+        let strength = 1.0 - smoother((along.abs() - self.whole) / self.fade);
+        strength
+            * smoother((x - low) / (self.flanks[0] * narrower))
+            * smoother((high - x) / (self.flanks[1] * narrower))
+    }
+
+    /// Height of the profile at a place along the strike.
+    fn height(&self, along: f64) -> f64 {
+        let at = ((along / self.half_length() + 1.0) / 2.0 * (SECTIONS - 1) as f64)
+            .clamp(0.0, (SECTIONS - 1) as f64);
+        let low = (at as usize).min(SECTIONS - 2);
+        let part = at - low as f64;
+        self.heights[low] * (1.0 - part) + self.heights[low + 1] * part
+    }
+
+    /// Gathers what Eq. 2 thickens (or thins, with `sign` −1) in each section, and spreads it over the profile.
+    fn gather(&mut self, sign: f64, thickening: impl Fn(DVec2) -> f64) {
+        const STEPS: usize = 24;
+        /// Rounds of smoothing with (1, 2, 1)/4: facets of the hulls must not show along the strike.
+        const ROUNDS: usize = 6;
+        let step = (self.gathers[1] - self.gathers[0]) / STEPS as f64;
+        // Each flank of the profile holds half its width.
+        let profile = self.edges[1] - self.edges[0] - (self.flanks[0] + self.flanks[1]) / 2.0;
+        let strike = self.across.perp();
+        self.heights.clear();
+        for k in 0..SECTIONS {
+            let along = self.half_length() * (2.0 * k as f64 / (SECTIONS - 1) as f64 - 1.0);
+            let sum: f64 = (0..STEPS)
+                .map(|i| {
+                    let x = self.gathers[0] + (i as f64 + 0.5) * step;
+                    (sign * thickening(self.origin + self.across * x + strike * along)).max(0.0)
+                })
+                .sum();
+            self.heights.push(sum * step / profile);
+        }
+        for _ in 0..ROUNDS {
+            let mut before = self.heights[0];
+            for k in 0..SECTIONS {
+                let here = self.heights[k];
+                let after = self.heights[(k + 1).min(SECTIONS - 1)];
+                self.heights[k] = (before + 2.0 * here + after) / 4.0;
+                before = here;
+            }
+        }
     }
 }
 
 impl Swirl {
+    /// The belts end so far from the body, metres.
+    const FAR: f64 = 26.0 * KM;
+
     fn mask(&self, p: DVec2) -> f64 {
-        let near = self.body.hull.nearest(p);
-        let far = 28.0 * KM;
-        if near.distance <= self.rim_offset || near.distance >= far {
+        let d = p - self.centre;
+        let beyond = d.length() - self.radius;
+        if beyond <= 0.0 || beyond >= Self::FAR {
             return 0.0;
         }
-        let outward = (p - near.projection) / near.distance;
-        let shift = near.projection - self.body.motion.apply_inverse(near.projection);
-        let ahead = smoother((shift.dot(outward) / self.reach - 0.05) / 0.5);
-        ahead
-            * smoother((near.distance - self.rim_offset) / self.front_width)
-            * smoother((far - near.distance) / (far - self.front_width))
+        let quadrant = self.sign * (2.0 * (d.to_angle() - self.axis)).sin();
+        smoother(quadrant)
+            * smoother(beyond / self.front_width)
+            * smoother((Self::FAR - beyond) / (Self::FAR - self.front_width))
     }
 }
 
 impl Belt {
-    /// How much of the thickening at `p` is land rising (or sinking) in this belt, 0–1.
+    /// Where the belt is: 1 in its middle, 0 outside.
     pub fn mask(&self, p: DVec2) -> f64 {
         self.weight
             * match &self.shape {
@@ -125,17 +186,40 @@ impl Belt {
             }
     }
 
+    /// Reads from `thickening` (`q − 1`) how much crust each cross-section has to put up.
+    pub fn gather(&mut self, thickening: impl Fn(DVec2) -> f64) {
+        let sign = match self.kind {
+            Kind::Range => 1.0,
+            Kind::Rift => -1.0,
+        };
+        if let Shape::Spindle(s) = &mut self.shape {
+            s.gather(sign, thickening);
+        }
+    }
+
+    /// Thickening (of a rift: thinning) at `p` after the strain has localised, in units of `q − 1`, ≥ 0.
+    pub fn localised(&self, p: DVec2) -> f64 {
+        let mask = self.mask(p);
+        if mask == 0.0 {
+            return 0.0;
+        }
+        mask * match &self.shape {
+            Shape::Spindle(s) => s.height(s.local(p).1),
+            Shape::Swirl(s) => s.height,
+        }
+    }
+
     /// True where `p` lies on the fault's half of the belt.
     pub fn on_fault_half(&self, p: DVec2) -> bool {
         match &self.shape {
             Shape::Spindle(s) => {
                 let (x, along) = s.local(p);
-                let (_, low, high) = s.edges_at(along);
+                let (low, high) = s.edges_at(along);
                 // The half is counted between the middles of both flanks, so that a long back does not shift it.
                 let middle = (low + high + s.flanks[0] / 2.0 - s.flanks[1] / 2.0) / 2.0;
                 (x - middle) * s.fault > 0.0
             }
-            Shape::Swirl(s) => s.body.hull.nearest(p).distance < s.rim_offset + s.front_width,
+            Shape::Swirl(s) => p.distance(s.centre) < s.radius + s.front_width,
         }
     }
 }
@@ -223,7 +307,9 @@ fn between(
     }
     let axis = (b.centre - a.centre).normalize_or_zero();
     let closing = relative.normalize().dot(axis);
-    let across = relative.normalize() * closing.signum();
+    // Oblique convergence is partitioned: the belt strikes half-way between the normals of motion and of the line
+    // that joins the plates.
+    let across = (relative.normalize() * closing.signum() + axis).normalize();
     let strike = across.perp();
 
     let (front_a, front_b) = (a.span(across).1, b.span(across).0);
@@ -248,24 +334,26 @@ fn between(
     let weight = smoother((closing.abs() - 0.15) / 0.5)
         * smoother((gap - 2.0 * KM) / (6.0 * KM))
         * (1.0 - smoother((gap - params.reach[0]) / (params.reach[1] - params.reach[0])))
-        * smoother((facing + fade / 2.0) / fade)
+        * smoother(1.0 + facing / (0.75 * fade))
         * smoother(relative.length() / (0.3 * (shift_a.length() + shift_b.length())))
         * screened;
 
     let pair = Pair::of(a.lead, b.lead);
     let at_a = (fault_side(pair) == FaultSide::First) == (a.lead == pair.first);
-    // The spindle lives in the middle of the gap; all lengths shrink together when the gap is short.
+    // The spindle lives in the gap; all lengths shrink together when the gap is short.
     let short = (room / (params.front_width + params.back_width + 4.0 * params.rim_offset)).min(1.0);
-    let (front, back) = (params.front_width * short, params.back_width * short);
     let offset = params.rim_offset * short;
     let kind = if closing > 0.0 { Kind::Range } else { Kind::Rift };
     let half = room / 2.0;
+    // The crest stands nearer to the fault: the back takes half the belt, and no less than asked for.
+    let front = params.front_width * short;
+    let back = (params.back_width * short).max(half - offset);
     let (edges, flanks, fault) = match (kind, at_a) {
         (Kind::Range, true) => ([offset - half, half - 2.0 * offset], [front, back], -1.0),
         (Kind::Range, false) => ([2.0 * offset - half, half - offset], [back, front], 1.0),
         (Kind::Rift, _) => ([3.0 * offset - half, half - 3.0 * offset], [front, front], 0.0),
     };
-    let bow = 0.32 * room;
+    let bow = 0.3 * (edges[1] - edges[0]);
     Some(Belt {
         pair,
         kind,
@@ -273,12 +361,14 @@ fn between(
         shape: Shape::Spindle(Spindle {
             origin: across * f64::midpoint(front_a, front_b) + strike * f64::midpoint(south, north),
             across,
+            gathers: [-half, half],
             edges,
             flanks,
             bow: [bow, bow],
-            whole: 0.4 * facing.max(0.0),
+            whole: 0.6 * facing.max(0.0),
             fade: fade + 0.6 * facing.max(0.0),
             fault,
+            heights: vec![0.0; SECTIONS],
         }),
     })
 }
@@ -308,7 +398,7 @@ fn before(
         let facing = (east - west) / 2.0;
         let front = mover.span(across).1 + params.rim_offset;
         let length = 40.0 * KM;
-        let long = length - params.front_width - 4.0 * KM;
+        let long = length - params.front_width - 2.0 * KM;
         let (flanks, fault) = match fault_side(pair) {
             FaultSide::First => ([params.front_width, long], -1.0),
             FaultSide::Second => ([long, params.front_width], 1.0),
@@ -320,24 +410,51 @@ fn before(
             shape: Shape::Spindle(Spindle {
                 origin: across * front + strike * f64::midpoint(west, east),
                 across,
+                gathers: [0.0, length],
                 edges: [0.0, length],
                 flanks,
-                bow: [7.0 * KM, 14.0 * KM],
-                whole: 0.4 * facing,
-                fade: 12.0 * KM + 0.75 * facing,
+                bow: [6.0 * KM, 14.0 * KM],
+                whole: 0.5 * facing,
+                fade: 14.0 * KM + 0.75 * facing,
                 fault,
+                heights: vec![0.0; SECTIONS],
             }),
         });
     }
-    found.push(Belt {
-        pair,
-        kind: Kind::Range,
-        weight: weight * turning,
-        shape: Shape::Swirl(Swirl {
-            body: mover.moved.clone(),
-            reach: turn + shift,
-            front_width: params.front_width,
-            rim_offset: params.rim_offset,
-        }),
-    });
+    let (axis, length) = long_axis(hull.core(), hull.radius());
+    let sense = mover.moved.motion.angle.signum();
+    for (kind, sign) in [(Kind::Range, sense), (Kind::Rift, -sense)] {
+        found.push(Belt {
+            pair,
+            kind,
+            weight: weight * turning * smoother(length / 0.1),
+            shape: Shape::Swirl(Swirl {
+                centre: mover.centre,
+                axis,
+                radius,
+                // The ground takes the rim's displacement up over the rest distance.
+                height: turn / params.rest_distance,
+                front_width: params.front_width,
+                sign,
+            }),
+        });
+    }
+}
+
+/// Azimuth of the long axis of a grown hull, and how long it is: (λ₁ − λ₂)/(λ₁ + λ₂) of the second moments of its
+/// corners and of the disc it is grown by; 0 for a disc.
+fn long_axis(core: &[DVec2], radius: f64) -> (f64, f64) {
+    let n = core.len() as f64;
+    let mean = core.iter().sum::<DVec2>() / n;
+    let (mut difference, mut cross, mut sum) = (0.0, 0.0, radius * radius / 2.0);
+    for &p in core {
+        let d = p - mean;
+        difference += (d.x * d.x - d.y * d.y) / n;
+        cross += 2.0 * d.x * d.y / n;
+        sum += d.length_squared() / n;
+    }
+    (
+        cross.atan2(difference) / 2.0,
+        difference.hypot(cross) / sum.max(1e-9),
+    )
 }

@@ -61,7 +61,7 @@ pub struct MountainParams {
     /// walls; above, they get horns beyond the hands.
     pub strike_fade: f64,
     /// A second plate takes part in a push fully up to the first gap and not at all beyond the second. Default
-    /// 50 km, 110 km.
+    /// 50 km, 90 km.
     pub reach: [f64; 2],
     /// Sinuosity: how far fronts wander from their smooth curve. Default 1.3 km. Range 0–4 km; 0 makes fields exactly
     /// symmetrical where gestures are.
@@ -93,7 +93,7 @@ impl Default for MountainParams {
             back_width: 12.0 * KM,
             rim_offset: 2.0 * KM,
             strike_fade: 0.5,
-            reach: [50.0 * KM, 110.0 * KM],
+            reach: [50.0 * KM, 90.0 * KM],
             sinuosity: 1.3 * KM,
             dome_radius: 3.5 * KM,
             dome_height: 150.0,

@@ -440,6 +440,8 @@ impl PlateSet {
 
     /// Stable is the resting plate of a pair, else the slower one when they first meet (the older of equals).
     fn latch(&mut self, now_yr: f64) {
+        /// Speeds within this ratio count as equal: hands are not exact.
+        const EQUAL: f64 = 1.05;
         let bodies = self.bodies(now_yr);
         for (i, a) in bodies.iter().enumerate() {
             for b in &bodies[i + 1..] {
@@ -454,7 +456,7 @@ impl PlateSet {
                 }
                 self.sides
                     .entry(pair)
-                    .or_insert(if speed(first) <= speed(second) {
+                    .or_insert(if speed(first) <= EQUAL * speed(second) {
                         FaultSide::First
                     } else {
                         FaultSide::Second

@@ -140,7 +140,7 @@ impl<S: TransportStage> Tectonics<S> {
         };
         self.stage.run(&problem, &mut out.transport);
         out.compression.fill(&out.transport);
-        let belts = belts(&bodies, params, |pair| plates.fault_side(pair));
+        let mut belts = belts(&bodies, params, |pair| plates.fault_side(pair));
 
         let blocks = grid.blocks();
         if self.uplift.as_ref().is_none_or(|(known, _)| *known != blocks) {
@@ -152,7 +152,7 @@ impl<S: TransportStage> Tectonics<S> {
         stage.run(
             &out.transport.q,
             &problem,
-            &belts,
+            &mut belts,
             plates.domes(),
             now_yr,
             params,

@@ -54,21 +54,16 @@ impl UpliftStage {
         &mut self,
         q: &Field,
         problem: &TransportProblem,
-        belts: &[Belt],
+        belts: &mut [Belt],
         domes: &[Dome],
         now_yr: f64,
         params: &MountainParams,
         uplift: &mut Field,
     ) {
         self.mean_over_blocks(q);
-        let thickest = percentile(
-            &mut self.sorted,
-            self.q.iter().map(|q| q - 1.0).filter(|t| *t > 1e-4),
-            0.95,
-        );
         match params.rule {
-            UpliftRule::Belts => self.belts(thickest, problem, belts, params, uplift),
-            UpliftRule::Paper => self.paper(thickest, problem, belts, params, uplift),
+            UpliftRule::Belts => self.belts(problem, belts, params, uplift),
+            UpliftRule::Paper => self.paper(problem, belts, params, uplift),
         }
         for dome in domes {
             raise_dome(dome, now_yr, params, uplift);
@@ -92,20 +87,26 @@ impl UpliftStage {
             });
     }
 
-    /// `u0 = α (q − 1)`, softly capped, in the belts.
+    /// `u0 = α (q − 1)` after localisation in the belts, softly capped.
     fn belts(
         &mut self,
-        thickest: f64,
         problem: &TransportProblem,
-        belts: &[Belt],
+        belts: &mut [Belt],
         params: &MountainParams,
         uplift: &mut Field,
     ) {
         let grid = self.grid;
         let cols = grid.cols;
-        // Where thickening ends, the belt ends smoothly.
-        let outline = (0.15 * thickest).max(1e-9);
-        let (q, wander) = (&self.q, &self.wander);
+        let q = Field {
+            grid,
+            data: std::mem::take(&mut self.q),
+        };
+        for belt in belts.iter_mut() {
+            belt.gather(|p| q.at(p) - 1.0);
+        }
+        self.q = q.data;
+        let belts = &*belts;
+        let wander = &self.wander;
         uplift
             .data
             .par_chunks_mut(cols * ROWS_PER_TASK)
@@ -119,33 +120,27 @@ impl UpliftStage {
                     let p = grid.centre(at % cols, at / cols);
                     let [east, north] = wander[at];
                     let warped = p + DVec2::new(f64::from(east), f64::from(north)) * params.sinuosity;
-                    // Belts that share a place join smoothly: 1 − Π(1 − mask).
-                    let (mut free, mut free_rift, mut most) = (1.0, 1.0, 0.0);
+                    // Belts that share a place join in the fourth-power mean: the stronger covers the weaker one's
+                    // edges, and neither ends in a crease.
+                    let (mut range, mut rift, mut most) = (0.0, 0.0, 0.0);
                     for (index, belt) in belts.iter().enumerate() {
-                        let mask = belt.mask(warped);
+                        let thickness = belt.localised(warped);
+                        let square = thickness * thickness;
                         match belt.kind {
-                            Kind::Range => free *= 1.0 - mask,
-                            Kind::Rift => free_rift *= 1.0 - mask,
+                            Kind::Range => range += square * square,
+                            Kind::Rift => rift += square * square,
                         }
-                        if mask > most {
-                            most = mask;
+                        if thickness > most {
+                            most = thickness;
                             *owner = index.min(usize::from(NOBODY) - 1) as u8;
                         }
                     }
-                    if most == 0.0 {
-                        continue;
-                    }
-                    let thicker = f64::from(q[at]) - 1.0;
-                    let rate = if thicker > 0.0 {
-                        (1.0 - free)
-                            * smoother(thicker / outline)
-                            * softly_capped(params.rise_per_thickening * thicker, params.rise_limit)
-                    } else {
-                        -(1.0 - free_rift)
-                            * softly_capped(-params.rise_per_thickening * thicker, params.sink_limit)
-                    };
-                    if rate != 0.0 {
-                        *u = (rate * off_rims(&problem.bodies, p, params)) as f32;
+                    if most > 0.0 {
+                        let rate = |sum: f64, limit: f64| {
+                            softly_capped(params.rise_per_thickening * sum.sqrt().sqrt(), limit)
+                        };
+                        let net = rate(range, params.rise_limit) - rate(rift, params.sink_limit);
+                        *u = (net * off_rims(&problem.bodies, p, params)) as f32;
                     }
                 }
             });
@@ -155,12 +150,13 @@ impl UpliftStage {
     /// side, offset into the region.
     fn paper(
         &mut self,
-        thickest: f64,
         problem: &TransportProblem,
         belts: &[Belt],
         params: &MountainParams,
         uplift: &mut Field,
     ) {
+        let thicker = self.q.iter().map(|q| q - 1.0).filter(|t| *t > 1e-4);
+        let thickest = percentile(&mut self.sorted, thicker, 0.95);
         let level = (params.fault_level * thickest).max(1e-9);
         let resting: Vec<bool> = problem
             .bodies
@@ -235,7 +231,7 @@ fn softly_capped(rate: f64, limit: f64) -> f64 {
         return 0.0;
     }
     let x = rate / limit;
-    rate / (1.0 + (x * x) * (x * x)).sqrt().sqrt()
+    rate / (1.0 + x * x).sqrt()
 }
 
 /// The `part` percentile of values, 0 for none.
@@ -254,13 +250,13 @@ fn percentile(scratch: &mut Vec<f32>, values: impl Iterator<Item = f32>, part: f
 fn wander(p: DVec2) -> DVec2 {
     /// Wavelength (m), azimuth (rad), amplitude, phase (turns).
     const WAVES: [[f64; 4]; 7] = [
-        [31_000.0, 0.35, 0.42, 0.11],
-        [26_000.0, 1.62, 0.42, 0.73],
-        [19_000.0, 2.71, 0.34, 0.39],
-        [15_500.0, 0.93, 0.30, 0.87],
-        [12_300.0, 2.05, 0.24, 0.21],
-        [10_700.0, 3.02, 0.20, 0.58],
-        [9_100.0, 1.24, 0.16, 0.95],
+        [31_000.0, 0.35, 0.50, 0.11],
+        [26_000.0, 1.62, 0.45, 0.73],
+        [19_000.0, 2.71, 0.30, 0.39],
+        [15_500.0, 0.93, 0.22, 0.87],
+        [12_300.0, 2.05, 0.14, 0.21],
+        [10_700.0, 3.02, 0.10, 0.58],
+        [9_100.0, 1.24, 0.07, 0.95],
     ];
     WAVES
         .iter()

@@ -1,0 +1,118 @@
+//! Transport at 1024² cells with three plates, and the whole way from a changed gesture to a new uplift.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use glam::DVec2;
+use orogen::gesture::contact::Side;
+use orogen::gesture::event::{HandEvent, HandId, Leg};
+use orogen::gesture::rigid::RigidFit;
+use orogen::mountain::compression::CompressionField;
+use orogen::mountain::transport::{
+    CpuTransport, MovedBody, TransportField, TransportProblem, TransportStage,
+};
+use orogen::mountain::{Grid, MountainParams, PlateSet, TectonicField, Tectonics};
+use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
+
+/// Five fingertips around a point, km.
+const HAND: [[f64; 2]; 5] = [[-9.0, -4.0], [-5.5, 6.0], [0.0, 8.5], [5.0, 7.0], [9.0, 1.0]];
+
+fn push(
+    plates: &mut PlateSet,
+    map: &PlanMap,
+    hand: u32,
+    at: DVec2,
+    by: DVec2,
+    turn: f64,
+    params: &MountainParams,
+) {
+    let starts: Vec<DVec2> = HAND.iter().map(|&f| (at + DVec2::from_array(f)) * KM).collect();
+    let spin = DVec2::from_angle(turn);
+    let tips = starts.iter().map(|&p| spin.rotate(p - at * KM) + (at + by) * KM);
+    let mm = |p: DVec2| map.to_table(p);
+    let tips: Vec<DVec2> = tips.map(mm).collect();
+    let starts: Vec<DVec2> = starts.into_iter().map(mm).collect();
+    let event = HandEvent::Push {
+        leg: Leg {
+            hand: HandId(hand),
+            index: 0,
+        },
+        side: Side::South,
+        fit: RigidFit::fit(&starts, &tips),
+        starts,
+    };
+    plates.apply(&event, map, 0.0, params);
+}
+
+fn three_plates(map: &PlanMap, params: &MountainParams) -> PlateSet {
+    let mut plates = PlateSet::default();
+    push(
+        &mut plates,
+        map,
+        0,
+        DVec2::new(40.0, 40.0),
+        DVec2::new(3.0, 0.0),
+        0.0,
+        params,
+    );
+    push(
+        &mut plates,
+        map,
+        1,
+        DVec2::new(110.0, 28.0),
+        DVec2::new(-14.0, 3.0),
+        0.1,
+        params,
+    );
+    push(
+        &mut plates,
+        map,
+        2,
+        DVec2::new(95.0, 82.0),
+        DVec2::new(-6.0, -12.0),
+        -0.1,
+        params,
+    );
+    plates
+}
+
+fn stages(criterion: &mut Criterion) {
+    let params = MountainParams::default();
+    let map = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE);
+    let extent = map.extent();
+    let plates = three_plates(&map, &params);
+    let grid = Grid::over(extent, params.cells);
+    let problem = TransportProblem {
+        grid,
+        bodies: plates
+            .bodies(0.0)
+            .iter()
+            .map(|b| MovedBody {
+                hull: b.support.moved(&b.motion),
+                motion: b.motion,
+            })
+            .collect(),
+        exponent: params.exponent,
+        rest_weight: params.rest_weight(),
+    };
+    let mut field = TransportField::new(grid);
+    criterion.bench_function("transport/1024x1024/3-plates", |b| {
+        b.iter(|| CpuTransport.run(&problem, &mut field));
+    });
+    let mut compression = CompressionField::none(grid);
+    criterion.bench_function("compression/1024x1024", |b| b.iter(|| compression.fill(&field)));
+
+    let mut tectonics = Tectonics::default();
+    let mut out = TectonicField::still(extent, &params);
+    criterion.bench_function("gesture-to-uplift/1024x1024/3-plates", |b| {
+        b.iter(|| {
+            let plates = three_plates(&map, &params);
+            tectonics.compute_into(&plates, extent, 1.0, &params, &mut out);
+        });
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20);
+    targets = stages
+}
+criterion_main!(benches);
