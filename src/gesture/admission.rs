@@ -18,10 +18,13 @@ pub struct AdmissionStats {
     pub over_cap: u64,
 }
 
+/// A source's own name of a contact: equal for contacts that follow each other under one id.
+type Slot = (Source, u16, u64);
+
 /// The contacts that are down.
 #[derive(Clone, Debug, Default)]
 pub struct Admission {
-    live: BTreeMap<(Source, u16, u64), Contact>,
+    live: BTreeMap<Slot, Contact>,
     stats: AdmissionStats,
 }
 
@@ -36,88 +39,86 @@ impl Admission {
         self.stats
     }
 
-    /// Takes the events of one moment and returns those that stand, in rounds.
-    ///
-    /// A round holds at most one event of a slot and is sorted: up, cancel, move, down; then by position; then by
-    /// key. What a contact does keeps its order (down, then up, in one moment gives two rounds), while the order
-    /// *between* contacts is forgotten: sources enumerate their contacts as they please. `Up` and `Cancel` carry
-    /// the contact as it last was.
-    pub fn admit(&mut self, events: &[ContactEvent]) -> Vec<Vec<ContactEvent>> {
-        let mut rounds = Vec::new();
-        for mut round in raw_rounds(events) {
-            round.sort_by(canonical);
-            let mut admitted = Vec::with_capacity(round.len());
-            let mut doubled = Vec::new();
-            let mut downs = Vec::new();
-            for event in round {
-                match event.phase {
-                    Phase::Up | Phase::Cancel => admitted.extend(self.lift(event)),
-                    Phase::Move => admitted.extend(self.shift(event)),
-                    Phase::Down => {
-                        let (old, new) = self.land(event);
-                        doubled.extend(old);
-                        downs.extend(new);
-                    }
-                }
-            }
-            if doubled.is_empty() {
-                admitted.append(&mut downs);
-            }
-            for round in [admitted, doubled, downs] {
-                if !round.is_empty() {
-                    rounds.push(round);
-                }
-            }
-        }
-        rounds
-    }
-
     /// Lets go of every contact; what was counted stays.
     pub fn clear(&mut self) {
         self.live.clear();
     }
 
-    fn lift(&mut self, event: ContactEvent) -> Option<ContactEvent> {
-        let slot = event.contact.key.slot();
-        if self.live.get(&slot).is_none_or(|c| c.key != event.contact.key) {
-            self.stats.ignored += 1;
-            return None;
+    /// Takes the events of one moment and returns those that stand, in rounds.
+    ///
+    /// A round is sorted: up, cancel, move, down; then by position; then by key. What a contact does keeps its order
+    /// (down, then up, in one moment gives two rounds), while the order *between* contacts is forgotten: sources
+    /// enumerate their contacts as they please. `Up` and `Cancel` carry the contact as it last was. Rounds that are
+    /// admitted again come out as they are.
+    pub fn admit(&mut self, events: &[ContactEvent]) -> Vec<Vec<ContactEvent>> {
+        let mut rounds = rounds_of(&self.standing(events));
+        for round in &mut rounds {
+            round.sort_by(canonical);
+            round.retain(|event| self.enter(event));
         }
-        self.live.remove(&slot).map(|contact| ContactEvent {
-            phase: event.phase,
-            contact,
-        })
+        rounds.retain(|round| !round.is_empty());
+        rounds
     }
 
-    fn shift(&mut self, event: ContactEvent) -> Option<ContactEvent> {
-        let place = self.live.get_mut(&event.contact.key.slot());
-        let Some(contact) = place.filter(|c| c.key == event.contact.key && is_place(&event.contact)) else {
-            self.stats.ignored += 1;
-            return None;
-        };
-        *contact = event.contact;
-        Some(event)
+    /// The events that make sense after those before them, as if there were room for any number of contacts.
+    fn standing(&mut self, events: &[ContactEvent]) -> Vec<ContactEvent> {
+        let mut changed: BTreeMap<Slot, Option<Contact>> = BTreeMap::new();
+        let mut standing = Vec::with_capacity(events.len());
+        for event in events {
+            let slot = event.contact.key.slot();
+            let before = changed
+                .get(&slot)
+                .copied()
+                .unwrap_or_else(|| self.live.get(&slot).copied());
+            let same = before.filter(|contact| contact.key == event.contact.key);
+            match (event.phase, same) {
+                (Phase::Up | Phase::Cancel, Some(contact)) => {
+                    standing.push(ContactEvent {
+                        phase: event.phase,
+                        contact,
+                    });
+                    changed.insert(slot, None);
+                }
+                (Phase::Move, Some(_)) if is_place(&event.contact) => {
+                    standing.push(*event);
+                    changed.insert(slot, Some(event.contact));
+                }
+                (Phase::Down, _) if is_place(&event.contact) => {
+                    if let Some(contact) = before {
+                        self.stats.doubled += 1;
+                        standing.push(ContactEvent {
+                            phase: Phase::Cancel,
+                            contact,
+                        });
+                    }
+                    standing.push(*event);
+                    changed.insert(slot, Some(event.contact));
+                }
+                _ => self.stats.ignored += 1,
+            }
+        }
+        standing
     }
 
-    /// The cancel of a contact that holds the slot, and the down itself.
-    fn land(&mut self, event: ContactEvent) -> (Option<ContactEvent>, Option<ContactEvent>) {
-        if !is_place(&event.contact) {
-            self.stats.ignored += 1;
-            return (None, None);
-        }
+    /// Carries out what stands; false for contacts that found no room.
+    fn enter(&mut self, event: &ContactEvent) -> bool {
         let slot = event.contact.key.slot();
-        let old = self.live.remove(&slot).map(|contact| ContactEvent {
-            phase: Phase::Cancel,
-            contact,
-        });
-        self.stats.doubled += u64::from(old.is_some());
-        if self.live.len() >= MAX_CONTACTS {
-            self.stats.over_cap += 1;
-            return (old, None);
+        match event.phase {
+            Phase::Up | Phase::Cancel => self.live.remove(&slot).is_some(),
+            Phase::Move => {
+                let place = self.live.get_mut(&slot);
+                place.map(|contact| *contact = event.contact).is_some()
+            }
+            Phase::Down if self.live.len() >= MAX_CONTACTS => {
+                self.stats.over_cap += 1;
+                false
+            }
+            Phase::Down => {
+                self.live.insert(slot, event.contact);
+                self.stats.total += 1;
+                true
+            }
         }
-        self.live.insert(slot, event.contact);
-        self.stats.total += 1;
-        (old, Some(event))
     }
 }
 
@@ -135,23 +136,126 @@ fn canonical(a: &ContactEvent, b: &ContactEvent) -> Ordering {
         .then_with(|| a.contact.key.cmp(&b.contact.key))
 }
 
-/// Distributes events over rounds: each event of a slot goes to the slot's last round if it comes later in the
-/// canonical order than what the round holds of it, else to the next.
-fn raw_rounds(events: &[ContactEvent]) -> Vec<Vec<ContactEvent>> {
+/// Distributes events over rounds: what a slot does goes to one round each, but that a lift and the next down of an id
+/// share one, as in a line of a gesture file.
+fn rounds_of(events: &[ContactEvent]) -> Vec<Vec<ContactEvent>> {
     let mut rounds: Vec<Vec<ContactEvent>> = Vec::new();
-    let mut last: BTreeMap<(Source, u16, u64), (usize, u8)> = BTreeMap::new();
+    let mut last: BTreeMap<Slot, (usize, Phase)> = BTreeMap::new();
     for &event in events {
-        let order = event.phase.order();
         let index = match last.get(&event.contact.key.slot()) {
             None => 0,
-            Some(&(index, before)) if order > before => index,
+            Some(&(index, Phase::Up | Phase::Cancel)) if event.phase == Phase::Down => index,
             Some(&(index, _)) => index + 1,
         };
-        last.insert(event.contact.key.slot(), (index, order));
+        last.insert(event.contact.key.slot(), (index, event.phase));
         if rounds.len() == index {
             rounds.push(Vec::new());
         }
         rounds[index].push(event);
     }
     rounds
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::gesture::contact::ContactKey;
+
+    fn event(phase: Phase, id: u64, generation: u32, x: f64) -> ContactEvent {
+        let key = ContactKey {
+            source: Source::Hid,
+            device: 0,
+            id,
+            generation,
+        };
+        ContactEvent {
+            phase,
+            contact: Contact {
+                key,
+                position: DVec2::new(x, 0.0),
+                size_mm: None,
+                confidence: None,
+            },
+        }
+    }
+
+    fn phases(rounds: &[Vec<ContactEvent>]) -> Vec<Vec<(Phase, u64)>> {
+        let brief = |round: &Vec<ContactEvent>| round.iter().map(|e| (e.phase, e.contact.key.id)).collect();
+        rounds.iter().map(brief).collect()
+    }
+
+    #[test]
+    fn an_id_lifts_and_lands_in_one_round_and_lands_and_lifts_in_two() {
+        use Phase::{Down, Move, Up};
+        let mut gate = Admission::default();
+        let rounds = gate.admit(&[
+            event(Down, 1, 0, 1.0),
+            event(Up, 1, 0, 9.0),
+            event(Down, 2, 0, 0.5),
+        ]);
+        assert_eq!(phases(&rounds), [vec![(Down, 2), (Down, 1)], vec![(Up, 1)]]);
+        assert_eq!(
+            rounds[1][0].contact.position.x, 1.0,
+            "up tells where the contact last was"
+        );
+        let rounds = gate.admit(&[
+            event(Move, 2, 0, 3.0),
+            event(Up, 2, 0, 3.0),
+            event(Down, 2, 1, 4.0),
+        ]);
+        assert_eq!(phases(&rounds), [vec![(Move, 2)], vec![(Up, 2), (Down, 2)]]);
+    }
+
+    #[test]
+    fn a_down_on_a_held_slot_cancels_what_held_it() {
+        use Phase::{Cancel, Down, Move};
+        let mut gate = Admission::default();
+        gate.admit(&[event(Down, 1, 0, 1.0)]);
+        let rounds = gate.admit(&[event(Down, 1, 1, 2.0), event(Move, 1, 0, 3.0)]);
+        assert_eq!(phases(&rounds), [vec![(Cancel, 1), (Down, 1)]]);
+        let expected = AdmissionStats {
+            total: 2,
+            ignored: 1,
+            doubled: 1,
+            over_cap: 0,
+        };
+        assert_eq!(
+            gate.stats(),
+            expected,
+            "the move of the cancelled contact is ignored"
+        );
+    }
+
+    #[test]
+    fn nonsense_takes_no_room() {
+        use Phase::{Down, Move};
+        let mut gate = Admission::default();
+        let rounds = gate.admit(&[
+            event(Move, 1, 0, 1.0),
+            event(Down, 1, 0, f64::NAN),
+            event(Down, 1, 0, 2e4 + 1.0),
+            event(Down, 1, 0, 5.0),
+        ]);
+        assert_eq!(phases(&rounds), [vec![(Down, 1)]]);
+        assert_eq!(gate.stats().ignored, 3);
+        assert_eq!(gate.live().count(), 1);
+    }
+
+    #[test]
+    fn beyond_the_cap_contacts_are_not_seen_until_there_is_room() {
+        use Phase::{Down, Up};
+        let mut gate = Admission::default();
+        let downs: Vec<ContactEvent> = (0..=MAX_CONTACTS as u64)
+            .map(|id| event(Down, id, 0, id as f64))
+            .collect();
+        assert_eq!(gate.admit(&downs)[0].len(), MAX_CONTACTS);
+        let last = MAX_CONTACTS as u64;
+        assert!(gate.admit(&[event(Up, last, 0, 0.0)]).is_empty());
+        // One lifts, one lands, in one moment: the lift makes room first.
+        let rounds = gate.admit(&[event(Down, last, 1, 0.0), event(Up, 7, 0, 0.0)]);
+        assert_eq!(phases(&rounds), [vec![(Up, 7), (Down, last)]]);
+        assert_eq!((gate.stats().over_cap, gate.stats().ignored), (1, 1));
+    }
 }

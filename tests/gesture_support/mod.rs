@@ -7,10 +7,10 @@ use orogen::gesture::event::{HandEvent, HandId};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
 
-pub const TABLE_MM: DVec2 = DVec2::new(1209.6, 680.4);
-pub const TICK_US: u64 = 16_000;
+pub(crate) const TABLE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+pub(crate) const TICK_US: u64 = 16_000;
 
-pub fn key(id: u64) -> ContactKey {
+pub(crate) fn key(id: u64) -> ContactKey {
     ContactKey {
         source: Source::File,
         device: 0,
@@ -19,7 +19,7 @@ pub fn key(id: u64) -> ContactKey {
     }
 }
 
-pub fn event(phase: Phase, id: u64, x: f64, y: f64) -> ContactEvent {
+pub(crate) fn event(phase: Phase, id: u64, x: f64, y: f64) -> ContactEvent {
     ContactEvent {
         phase,
         contact: Contact {
@@ -31,24 +31,27 @@ pub fn event(phase: Phase, id: u64, x: f64, y: f64) -> ContactEvent {
     }
 }
 
-pub fn with_size(mut event: ContactEvent, w: f64, h: f64) -> ContactEvent {
+pub(crate) fn with_size(mut event: ContactEvent, w: f64, h: f64) -> ContactEvent {
     event.contact.size_mm = Some(DVec2::new(w, h));
     event
 }
 
-pub fn with_confidence(mut event: ContactEvent, confidence: f32) -> ContactEvent {
+pub(crate) fn with_confidence(mut event: ContactEvent, confidence: f32) -> ContactEvent {
     event.contact.confidence = Some(confidence);
     event
 }
 
+/// A finger by its id, from where to where it goes.
+pub(crate) type Drag = (u64, (f64, f64), (f64, f64));
+
 /// A table on which a script plays. Time is in milliseconds.
 #[derive(Clone)]
-pub struct Table {
-    pub tracker: HandTracker,
-    pub t_us: u64,
+pub(crate) struct Table {
+    pub(crate) tracker: HandTracker,
+    pub(crate) t_us: u64,
     ticked_us: u64,
     /// Everything the hands did, with the tick in which it was told.
-    pub told: Vec<(u64, HandEvent)>,
+    pub(crate) told: Vec<(u64, HandEvent)>,
 }
 
 impl Default for Table {
@@ -64,7 +67,7 @@ impl Default for Table {
 
 impl Table {
     /// Plays ticks until `ms`.
-    pub fn until(&mut self, ms: f64) -> &mut Self {
+    pub(crate) fn until(&mut self, ms: f64) -> &mut Self {
         self.t_us = (ms * 1000.0) as u64;
         while self.ticked_us + TICK_US <= self.t_us {
             self.ticked_us += TICK_US;
@@ -76,7 +79,7 @@ impl Table {
     }
 
     /// Feeds events at `ms`.
-    pub fn at(&mut self, ms: f64, events: &[ContactEvent]) -> &mut Self {
+    pub(crate) fn at(&mut self, ms: f64, events: &[ContactEvent]) -> &mut Self {
         // Ticks before this moment have gone by; one at this very moment comes after it.
         self.until(((ms * 1000.0) as u64).saturating_sub(1) as f64 / 1000.0);
         self.t_us = (ms * 1000.0) as u64;
@@ -88,24 +91,24 @@ impl Table {
         self
     }
 
-    pub fn down(&mut self, ms: f64, id: u64, x: f64, y: f64) -> &mut Self {
+    pub(crate) fn down(&mut self, ms: f64, id: u64, x: f64, y: f64) -> &mut Self {
         self.at(ms, &[event(Phase::Down, id, x, y)])
     }
 
-    pub fn shift(&mut self, ms: f64, id: u64, x: f64, y: f64) -> &mut Self {
+    pub(crate) fn shift(&mut self, ms: f64, id: u64, x: f64, y: f64) -> &mut Self {
         self.at(ms, &[event(Phase::Move, id, x, y)])
     }
 
-    pub fn up(&mut self, ms: f64, id: u64) -> &mut Self {
+    pub(crate) fn up(&mut self, ms: f64, id: u64) -> &mut Self {
         self.at(ms, &[event(Phase::Up, id, 0.0, 0.0)])
     }
 
-    pub fn cancel(&mut self, ms: f64, id: u64) -> &mut Self {
+    pub(crate) fn cancel(&mut self, ms: f64, id: u64) -> &mut Self {
         self.at(ms, &[event(Phase::Cancel, id, 0.0, 0.0)])
     }
 
     /// Drags fingers straight and evenly from their first to their second places, in steps of at most 4 mm.
-    pub fn drag(&mut self, from_ms: f64, to_ms: f64, fingers: &[(u64, (f64, f64), (f64, f64))]) -> &mut Self {
+    pub(crate) fn drag(&mut self, from_ms: f64, to_ms: f64, fingers: &[Drag]) -> &mut Self {
         let longest = fingers
             .iter()
             .map(|(_, a, b)| DVec2::from(*a).distance(DVec2::from(*b)));
@@ -125,7 +128,7 @@ impl Table {
     }
 
     /// Lifts what is left and returns all events, in order.
-    pub fn finish(&mut self) -> Vec<HandEvent> {
+    pub(crate) fn finish(&mut self) -> Vec<HandEvent> {
         let events = self.tracker.finish(self.t_us);
         let t_us = self.t_us;
         self.told.extend(events.into_iter().map(|e| (t_us, e)));
@@ -134,19 +137,19 @@ impl Table {
         self.events()
     }
 
-    pub fn events(&self) -> Vec<HandEvent> {
+    pub(crate) fn events(&self) -> Vec<HandEvent> {
         self.told.iter().map(|(_, e)| e.clone()).collect()
     }
 
     /// What happened, one word each: `rest 0`, `push 0.1` (updates of a leg as one), `end 0.1`, `tap 2`, `lift 0`, `retract`.
-    pub fn words(&self) -> Vec<String> {
+    pub(crate) fn words(&self) -> Vec<String> {
         let mut words: Vec<String> = self.told.iter().map(|(_, e)| word(e)).collect();
         words.dedup();
         words
     }
 
     /// The last push of a leg: its starts, and where the fit takes them.
-    pub fn last_push(&self, hand: u32, index: u32) -> (Vec<DVec2>, Vec<DVec2>) {
+    pub(crate) fn last_push(&self, hand: u32, index: u32) -> (Vec<DVec2>, Vec<DVec2>) {
         let push = self.told.iter().rev().find_map(|(_, e)| match e {
             HandEvent::Push { leg, starts, fit, .. } if leg.hand == HandId(hand) && leg.index == index => {
                 Some((
@@ -160,7 +163,7 @@ impl Table {
     }
 }
 
-pub fn word(event: &HandEvent) -> String {
+pub(crate) fn word(event: &HandEvent) -> String {
     match event {
         HandEvent::Rest { hand, .. } => format!("rest {}", hand.0),
         HandEvent::Push { leg, .. } => format!("push {}.{}", leg.hand.0, leg.index),
@@ -171,6 +174,6 @@ pub fn word(event: &HandEvent) -> String {
     }
 }
 
-pub fn near(a: DVec2, b: (f64, f64)) -> bool {
+pub(crate) fn near(a: DVec2, b: (f64, f64)) -> bool {
     a.distance(DVec2::from(b)) < 1e-6
 }
