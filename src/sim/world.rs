@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::mountain::PlateSet;
 use crate::mountain::strata::Strata;
-use crate::terrain::{StartLand, Tin, TinError};
+use crate::terrain::{StartLand, Tin, TinError, resample};
 use crate::units::PlanMap;
 
 /// Everything that the land is at one moment. Parameters and scratch memory live elsewhere, so a snapshot is a clone.
@@ -61,6 +61,25 @@ impl World {
             last_push_yr: 0.0,
             totals: Totals::default(),
         })
+    }
+
+    /// The same world on other nodes: heights and displacements are interpolated.
+    #[must_use]
+    pub fn resampled(&self, tin: Arc<Tin>) -> Self {
+        let Self { seed, map, tin: from, time_yr, z, strata, plates, last_push_yr, totals } = self;
+        let mut strata = strata.clone();
+        strata.resample(|values| resample(from, &tin, values));
+        Self {
+            seed: *seed,
+            map: *map,
+            time_yr: *time_yr,
+            z: resample(from, &tin, z),
+            strata,
+            plates: plates.clone(),
+            last_push_yr: *last_push_yr,
+            totals: *totals,
+            tin,
+        }
     }
 
     /// Memory that a snapshot of this world needs, bytes (the shared nodes not counted).
