@@ -139,6 +139,10 @@ fn equal_heights_route_the_same_way_twice() {
             assert_eq!(first.receivers(), second.receivers());
             assert_eq!(first.order(), second.order());
             assert_eq!(first.drainage(), second.drainage());
+            let wet = tin
+                .nodes()
+                .any(|node| first.lakes().lake(node, z[node.index()]).is_some());
+            assert_eq!(first.lakes().count() > 0, wet);
         }
     }
 }

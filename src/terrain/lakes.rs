@@ -27,7 +27,8 @@ pub struct Lakes {
     spill: Vec<f64>,
     /// The lake each basin belongs to: basins under one water surface share it.
     lake: Vec<u32>,
-    count: usize,
+    /// Whether each lake has any depth: on a plain, water at the level of the ground is no lake.
+    wet: Vec<bool>,
     pits: Vec<NodeId>,
     passes: Vec<Pass>,
     /// The spanning tree.
@@ -53,7 +54,7 @@ impl Lakes {
         self.basin.clear();
         self.spill.clear();
         self.lake.clear();
-        self.count = 0;
+        self.wet.clear();
         self.pits.clear();
         let ends = |&(i, receiver): &(usize, &NodeId)| receiver.index() == i && !tin.border()[i];
         let pits = receivers.iter().enumerate().filter(ends).map(|(_, &pit)| pit);
@@ -64,7 +65,7 @@ impl Lakes {
         self.label(receivers);
         self.find_passes(tin, z);
         self.span();
-        self.carve(receivers);
+        self.carve(z, receivers);
     }
 
     /// Basins are numbered by pit, from 1. Each walk downstream ends at a labelled node and labels its path.
@@ -149,7 +150,7 @@ impl Lakes {
     }
 
     /// Walks the tree from the outside inwards: levels, lakes, and reversed paths.
-    fn carve(&mut self, receivers: &mut [NodeId]) {
+    fn carve(&mut self, z: &[f64], receivers: &mut [NodeId]) {
         let basins = self.pits.len() + 1;
         self.ends.list(&self.tree, |pass| {
             [self.basin[pass.inner.index()], outer_basin(&self.basin, pass)]
@@ -177,12 +178,15 @@ impl Lakes {
                 }
                 self.spill[other as usize] = pass.height.max(level);
                 // A pass under the water of the basin below joins the two into one lake.
-                self.lake[other as usize] = if pass.height <= level {
+                let lake = if basin != OUTSIDE && pass.height <= level {
                     self.lake[basin as usize]
                 } else {
-                    self.count += 1;
-                    self.count as u32 - 1
+                    self.wet.push(false);
+                    self.wet.len() as u32 - 1
                 };
+                self.lake[other as usize] = lake;
+                let deepest = z[self.pits[other as usize - 1].index()];
+                self.wet[lake as usize] |= deepest < self.spill[other as usize];
                 reverse_path(receivers, mouth, towards);
                 self.queue.push(other);
             }
@@ -194,9 +198,9 @@ impl Lakes {
         !self.pits.is_empty()
     }
 
-    /// Number of separate water surfaces.
+    /// Number of separate water surfaces above ground.
     pub fn count(&self) -> usize {
-        self.count
+        self.wet.iter().filter(|&&wet| wet).count()
     }
 
     /// The level to which water stands at a node whose height was `z` when routed: `z` itself where it is dry.
@@ -207,7 +211,7 @@ impl Lakes {
         }
     }
 
-    /// The lake over a node whose height was `z` when routed; none where it is dry. Lakes are numbered from 0.
+    /// The lake over a node whose height was `z` when routed; none where it is dry.
     pub fn lake(&self, node: NodeId, z: f64) -> Option<u32> {
         let &basin = self.basin.get(node.index())?;
         (z < self.spill[basin as usize]).then(|| self.lake[basin as usize])

@@ -148,8 +148,7 @@ struct DartBoard {
 /// Empty cells around the land, so that the neighbourhood of a cell needs no bounds.
 const PAD: usize = 2;
 
-/// Columns that one test of a neighbourhood row looks at. A disc reaches two cells far, so five would do; eight fill
-/// whole vector registers and cost less.
+/// Most columns that one test of a neighbourhood row looks at.
 const LANES: usize = 8;
 
 /// Coordinate of "no sample": farther than a radius from everything.
@@ -198,17 +197,30 @@ impl DartBoard {
 
     /// True if a disc covers the whole square of the given half side around (x, y): the point itself where it is 0.
     fn is_covered(&self, cell: u32, x: f32, y: f32, half: f32) -> bool {
-        // The nearer rows cover more often.
-        [2, 1, 3, 0, 4].into_iter().any(|row| {
-            let first = cell as usize + row * self.stride - 2 * self.stride - 2;
-            let (xs, ys) = (&self.xs[first..first + LANES], &self.ys[first..first + LANES]);
-            let mut covered = false;
-            for lane in 0..LANES {
-                let (dx, dy) = ((xs[lane] - x).abs() + half, (ys[lane] - y).abs() + half);
-                covered |= dx * dx + dy * dy < RADIUS_SQUARED;
-            }
-            covered
-        })
+        // A disc that covers a square of half a cell or more lies one cell away at most, others two; eight lanes fill
+        // whole registers and cost less than five would. The nearer rows cover more often.
+        let reached =
+            |row: usize, reach: usize| cell as usize + row * self.stride - reach * (self.stride + 1);
+        if half >= 0.25 {
+            [1, 0, 2]
+                .into_iter()
+                .any(|row| self.row_covers::<4>(reached(row, 1), x, y, half))
+        } else {
+            [2, 1, 3, 0, 4]
+                .into_iter()
+                .any(|row| self.row_covers::<LANES>(reached(row, 2), x, y, half))
+        }
+    }
+
+    /// True if one of `N` discs from the grid cell `first` on covers the square.
+    fn row_covers<const N: usize>(&self, first: usize, x: f32, y: f32, half: f32) -> bool {
+        let (xs, ys) = (&self.xs[first..first + N], &self.ys[first..first + N]);
+        let mut covered = false;
+        for lane in 0..N {
+            let (dx, dy) = ((xs[lane] - x).abs() + half, (ys[lane] - y).abs() + half);
+            covered |= dx * dx + dy * dy < RADIUS_SQUARED;
+        }
+        covered
     }
 
     /// Throws until there are `target` positions in all, or no room is left.
