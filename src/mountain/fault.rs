@@ -119,6 +119,8 @@ fn join(segments: &[(DVec2, DVec2)]) -> Vec<Vec<DVec2>> {
     let key = |p: DVec2| ((p.x * 100.0).round() as i64, (p.y * 100.0).round() as i64);
     let mut starts: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     let mut ends: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    // A line through a corner leaves segments without length there, which would hide their neighbours.
+    let segments: Vec<(DVec2, DVec2)> = segments.iter().copied().filter(|&(a, b)| key(a) != key(b)).collect();
     for (index, &(a, b)) in segments.iter().enumerate() {
         starts.insert(key(a), index);
         ends.insert(key(b), index);
