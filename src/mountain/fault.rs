@@ -120,7 +120,11 @@ fn join(segments: &[(DVec2, DVec2)]) -> Vec<Vec<DVec2>> {
     let mut starts: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     let mut ends: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     // A line through a corner leaves segments without length there, which would hide their neighbours.
-    let segments: Vec<(DVec2, DVec2)> = segments.iter().copied().filter(|&(a, b)| key(a) != key(b)).collect();
+    let segments: Vec<(DVec2, DVec2)> = segments
+        .iter()
+        .copied()
+        .filter(|&(a, b)| key(a) != key(b))
+        .collect();
     for (index, &(a, b)) in segments.iter().enumerate() {
         starts.insert(key(a), index);
         ends.insert(key(b), index);
