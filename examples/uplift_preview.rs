@@ -260,19 +260,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(&folder)?;
     let map = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE);
     let mut tectonics = Tectonics::default();
-    let mut index = String::new();
+    let mut index = Vec::new();
     for scene in scenes() {
         let plates = play(&scene, &map, &params);
         let field = tectonics.compute(&plates, map.extent(), 1.0, &params);
         draw(&field, &plates, &map).save(folder.join(format!("{}.png", scene.name)))?;
         let caps: Vec<f64> = plates.plates().iter().map(|p| p.cap).collect();
-        index += &format!(
+        index.push(format!(
             "{}: {:?}\n  caps {caps:?}, {} faults\n",
             scene.name,
             field.report,
             field.faults.len()
-        );
+        ));
     }
-    std::fs::write(folder.join("figures.txt"), index)?;
+    std::fs::write(folder.join("figures.txt"), index.concat())?;
     Ok(())
 }

@@ -265,7 +265,11 @@ fn thickness_is_one_over_the_determinant_of_the_deformation() {
             let centre = grid.centre(col, row);
             // Differences over a tenth of a cell against quads of whole cells: equal to second order away from the
             // rims, where Φ⁻¹ is not smooth.
-            if problem.bodies.iter().any(|b| b.hull.nearest(centre).distance < 4_000.0) {
+            if problem
+                .bodies
+                .iter()
+                .any(|b| b.hull.nearest(centre).distance < 4_000.0)
+            {
                 continue;
             }
             let h = 0.05 * grid.cell;

@@ -12,8 +12,9 @@
 
 use glam::DVec2;
 
+use super::body::Body;
 use super::params::MountainParams;
-use super::plate::{Body, FaultSide, Pair, PlateId};
+use super::plate::{FaultSide, Pair, PlateId};
 use super::smoother;
 use super::transport::MovedBody;
 use crate::units::KM;
@@ -120,7 +121,7 @@ impl Spindle {
 
     /// Height of the profile at a place along the strike.
     fn height(&self, along: f64) -> f64 {
-        let at = ((along / self.half_length() + 1.0) / 2.0 * (SECTIONS - 1) as f64)
+        let at = (f64::midpoint(along / self.half_length(), 1.0) * (SECTIONS - 1) as f64)
             .clamp(0.0, (SECTIONS - 1) as f64);
         let low = (at as usize).min(SECTIONS - 2);
         let part = at - low as f64;
@@ -134,7 +135,7 @@ impl Spindle {
         const ROUNDS: usize = 6;
         let step = (self.gathers[1] - self.gathers[0]) / STEPS as f64;
         // Each flank of the profile holds half its width.
-        let profile = self.edges[1] - self.edges[0] - (self.flanks[0] + self.flanks[1]) / 2.0;
+        let profile = self.edges[1] - self.edges[0] - f64::midpoint(self.flanks[0], self.flanks[1]);
         let strike = self.across.perp();
         self.heights.clear();
         for k in 0..SECTIONS {
@@ -345,12 +346,14 @@ fn between(
     let offset = params.rim_offset * short;
     let kind = if closing > 0.0 { Kind::Range } else { Kind::Rift };
     let half = room / 2.0;
-    // The crest stands nearer to the fault: the back takes half the belt, and no less than asked for.
+    // The fault stands off the stable plate, so that the crest comes into the middle third of the gap; the back
+    // takes half the gap, and no less than asked for.
+    let stand = offset.max(params.fault_stand * room);
     let front = params.front_width * short;
     let back = (params.back_width * short).max(half - offset);
     let (edges, flanks, fault) = match (kind, at_a) {
-        (Kind::Range, true) => ([offset - half, half - 2.0 * offset], [front, back], -1.0),
-        (Kind::Range, false) => ([2.0 * offset - half, half - offset], [back, front], 1.0),
+        (Kind::Range, true) => ([stand - half, half - 2.0 * offset], [front, back], -1.0),
+        (Kind::Range, false) => ([2.0 * offset - half, half - stand], [back, front], 1.0),
         (Kind::Rift, _) => ([3.0 * offset - half, half - 3.0 * offset], [front, front], 0.0),
     };
     let bow = 0.3 * (edges[1] - edges[0]);

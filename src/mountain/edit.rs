@@ -68,7 +68,7 @@ impl PlateSet {
             FaultSide::First => FaultSide::Second,
             FaultSide::Second => FaultSide::First,
         };
-        self.sides_mut().insert(pair, flipped);
+        self.sides.insert(pair, flipped);
     }
 
     fn refit(
@@ -78,7 +78,7 @@ impl PlateSet {
         params: &MountainParams,
         change: impl FnOnce(&mut Vec<DVec2>, &mut Vec<DVec2>),
     ) -> Option<PlateId> {
-        let plate = self.plates_mut().iter_mut().find(|p| p.id == id)?;
+        let plate = self.plates.iter_mut().find(|p| p.id == id)?;
         // Tips as drawn, that is after the cap: what is not touched stays where it is seen.
         let mut tips: Vec<DVec2> = plate.arrows().map(|(_, tip)| tip).collect();
         change(&mut plate.starts, &mut tips);

@@ -34,7 +34,7 @@ impl Grid {
             cell,
             north_west: DVec2::new(
                 (extent.width - cols as f64 * cell) / 2.0,
-                (extent.height + rows as f64 * cell) / 2.0,
+                f64::midpoint(extent.height, rows as f64 * cell),
             ),
         }
     }

@@ -288,3 +288,93 @@ fn without_collinear(hull: &[DVec2]) -> Vec<DVec2> {
     corners.rotate_left(first);
     corners
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Hull {
+        let points = [
+            [0.0, 0.0],
+            [10.0, 0.0],
+            [10.0, 10.0],
+            [0.0, 10.0],
+            [5.0, 5.0],
+            [5.0, 0.0],
+        ];
+        Hull::new(&points.map(DVec2::from_array), 2.0).unwrap()
+    }
+
+    #[test]
+    fn hull_of_points_one_two_and_many() {
+        assert_eq!(Hull::new(&[], 1.0), None);
+        assert_eq!(Hull::new(&[DVec2::NAN, DVec2::splat(1e300)], 1.0), None);
+        let disc = Hull::new(&[DVec2::ONE; 3], 2.0).unwrap();
+        assert_eq!(disc.core(), [DVec2::ONE]);
+        assert!((disc.area() - 4.0 * std::f64::consts::PI).abs() < 1e-12);
+        let segment = Hull::new(&[DVec2::ZERO, DVec2::X * 4.0, DVec2::X * 2.0], 1.0).unwrap();
+        assert_eq!(segment.core(), [DVec2::ZERO, DVec2::X * 4.0]);
+        assert!((segment.area() - (8.0 + std::f64::consts::PI)).abs() < 1e-12);
+        let square = square();
+        assert_eq!(
+            square.core().len(),
+            4,
+            "inner points and points on edges are dropped"
+        );
+        assert!((square.area() - (100.0 + 80.0 + 4.0 * std::f64::consts::PI)).abs() < 1e-9);
+        assert!((square.centre() - DVec2::splat(5.0)).length() < 1e-9);
+    }
+
+    #[test]
+    fn nearest_points_on_edges_corners_and_inside() {
+        let hull = square();
+        let at = |x: f64, y: f64| hull.nearest(DVec2::new(x, y));
+        assert_eq!(at(5.0, 11.5).distance, 0.0);
+        assert_eq!(at(5.0, 11.5).projection, DVec2::new(5.0, 11.5));
+        assert!((at(15.0, 4.0).distance - 3.0).abs() < 1e-12);
+        assert!((at(15.0, 4.0).projection - DVec2::new(12.0, 4.0)).length() < 1e-12);
+        let corner = at(13.0, 14.0);
+        assert!((corner.distance - 3.0).abs() < 1e-12);
+        assert!((corner.projection - DVec2::new(11.2, 11.6)).length() < 1e-12);
+        assert!((hull.support(DVec2::X) - 12.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn gaps_and_overlaps() {
+        let hull = square();
+        let moved = |x: f64, y: f64| {
+            hull.moved(&RigidMotion {
+                angle: 0.0,
+                translation: DVec2::new(x, y),
+            })
+        };
+        assert!((hull.distance_to(&moved(20.0, 3.0)) - 6.0).abs() < 1e-12);
+        assert!(hull.overlaps(&moved(13.0, 0.0)) && !hull.overlaps(&moved(14.5, 0.0)));
+        assert!(hull.overlaps(&moved(1.0, 1.0)), "one inside the other's reach");
+        // Two bars that cross without a corner of one inside the other.
+        let bar =
+            |a: [f64; 2], b: [f64; 2]| Hull::new(&[DVec2::from_array(a), DVec2::from_array(b)], 0.1).unwrap();
+        assert!(bar([-5.0, 0.0], [5.0, 0.0]).overlaps(&bar([0.0, -5.0], [0.0, 5.0])));
+        assert!(hull.merged(&moved(20.0, 0.0)).contains(DVec2::new(15.0, 5.0)));
+    }
+
+    #[test]
+    fn outlines_run_round_the_rim() {
+        for hull in [
+            square(),
+            Hull::new(&[DVec2::ZERO], 3.0).unwrap(),
+            Hull::new(&[DVec2::ZERO, DVec2::Y * 4.0], 3.0).unwrap(),
+        ] {
+            let rim = hull.outline(0.0);
+            assert!(
+                (signed_area(&rim) / hull.area() - 1.0).abs() < 0.05,
+                "{}",
+                signed_area(&rim)
+            );
+            for &p in &rim {
+                let off = p - hull.nearest_on_core(p);
+                assert!((off.length() - hull.radius()).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -10,6 +10,7 @@
 //! north. Nothing here knows the globe, a window or a graphics card, reads a clock, or draws random numbers.
 
 pub mod belt;
+pub mod body;
 pub mod compression;
 pub mod edit;
 pub mod fault;

@@ -57,6 +57,9 @@ pub struct MountainParams {
     /// How far the belt's edges keep away from the hulls. Default 2 km. Range 0–10 km: at 0 the rim of Eq. 2, where
     /// `q` is highest, shines through.
     pub rim_offset: f64,
+    /// The fault between two plates stands off the stable one by this part of the gap. Default 0.2. Range 0–0.4: at 0
+    /// the crest leans on the resting hand, above 0.4 the belt has no room for its back.
+    pub fault_stand: f64,
     /// Along the strike a belt fades over this part of the gap. Default 0.5. Range 0.1–1.5: below, belts end in
     /// walls; above, they get horns beyond the hands.
     pub strike_fade: f64,
@@ -92,6 +95,7 @@ impl Default for MountainParams {
             front_width: 5.0 * KM,
             back_width: 12.0 * KM,
             rim_offset: 2.0 * KM,
+            fault_stand: 0.2,
             strike_fade: 0.5,
             reach: [50.0 * KM, 90.0 * KM],
             sinuosity: 1.3 * KM,

@@ -50,6 +50,10 @@ impl UpliftStage {
     }
 
     /// Fills `uplift` (on the grid of blocks, m/yr).
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "every input of the stage, each used once"
+    )]
     pub(super) fn run(
         &mut self,
         q: &Field,
@@ -221,7 +225,7 @@ impl UpliftStage {
 fn off_rims(bodies: &[MovedBody], p: DVec2, params: &MountainParams) -> f64 {
     bodies
         .iter()
-        .map(|body| smoother(body.hull.nearest(p).distance / (2.0 * params.rim_offset).max(1.0)))
+        .map(|body| smoother(body.hull.nearest(p).distance / (3.0 * params.rim_offset).max(1.0)))
         .product()
 }
 

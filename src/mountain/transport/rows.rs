@@ -105,7 +105,7 @@ impl Kernel {
                             DVec2::new(x, y),
                             self.cell as f32,
                             self.exponent,
-                            Sums {
+                            &mut Sums {
                                 weights: &mut weights[cut.clone()],
                                 east: &mut east[cut.clone()],
                                 north: &mut north[cut],
@@ -187,7 +187,7 @@ impl Caster {
     }
 
     /// Adds this body's share for corners `from`, `from + cell`, … eastwards.
-    fn cast(&self, feature: Feature, from: DVec2, cell: f32, exponent: f32, sums: Sums<'_>) {
+    fn cast(&self, feature: Feature, from: DVec2, cell: f32, exponent: f32, sums: &mut Sums<'_>) {
         let here = from - self.pivot;
         let (x0, y) = (here.x as f32, here.y as f32);
         let [xx, xy, yx, yy] = self.spin;
