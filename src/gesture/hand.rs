@@ -1,6 +1,6 @@
 //! Strokes → hands: which fingers belong together, and what the hand does with the ground.
 //!
-//! * Fingers that land near each other and close in time are a hand (see [`super::grouping`]); they stay one until they lift.
+//! * Fingers that land near each other and close in time are a hand; they stay one until they lift.
 //! * A hand that has not moved by 4 mm **rests** after half a second, and **taps** if it lifts before.
 //! * A hand that moves **drags**: one leg, from where its fingers started, by the best rigid motion. It stands still
 //!   or goes on as it likes; when it turns back the leg ends at its farthest point and the next one begins there.

@@ -3,7 +3,7 @@
 //! * [`contact`]: what every source reports; [`admission`] puts it in order and keeps nonsense out.
 //! * [`stroke`]: contacts that are fingers (palms, ghosts, flicker and stuck contacts end here).
 //! * [`hand`]: fingers that belong together, and what they do ([`event`]), by the best rigid motion ([`rigid`]).
-//! * [`command`]: what visitors do outside the contacts; [`file`]: all of it, written down.
+//! * [`command`]: what visitors do outside the contacts; [`mod@file`]: all of it, written down.
 //!
 //! Everything here is in table millimetres, x right, y down, and session microseconds. No clock is read and no file
 //! is opened: time comes in as numbers, files as `Read` and `Write`.

@@ -61,7 +61,7 @@ pub enum Doing {
     Pushing {
         /// The leg.
         leg: Leg,
-        /// Where the fingers were when the leg began, as in [`HandEvent::Push`].
+        /// Where the fingers were when the leg began, as in [`super::event::HandEvent::Push`].
         starts: Vec<DVec2>,
         /// The motion.
         fit: RigidFit,
