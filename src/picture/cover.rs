@@ -20,6 +20,12 @@ pub(super) struct Palette {
     haze: Vec3,
 }
 
+/// Variation of the cover over several kilometres, at a place (east, north, metres). It is smooth enough to be
+/// computed on a coarse grid.
+pub(super) fn broad_noise((east, north): (f32, f32)) -> f32 {
+    noise::fractal(east / 5200.0, north / 5200.0, 3, 11)
+}
+
 impl Palette {
     /// For land whose plains lie at about `lowland` metres.
     pub(super) fn new(lowland: f32) -> Self {
@@ -53,11 +59,10 @@ impl Palette {
         }
     }
 
-    /// Colour of the dry land at a place (east, north, metres) and height (metres). `floodplain` is 1 beside large
-    /// rivers.
-    pub(super) fn land(&self, at: (f32, f32), height: f32, floodplain: f32, spot: &Spot) -> Vec3 {
+    /// Colour of the dry land at a place (east, north, metres) and height (metres). `broad` is [`broad_noise`] there,
+    /// `floodplain` is 1 beside large rivers.
+    pub(super) fn land(&self, at: (f32, f32), height: f32, broad: f32, floodplain: f32, spot: &Spot) -> Vec3 {
         let (east, north) = at;
-        let broad = noise::fractal(east / 5200.0, north / 5200.0, 3, 11);
         let fine = noise::fractal(east / 1100.0, north / 1100.0, 3, 23);
         let border = 0.6 * broad + 0.4 * fine;
         let slope = spot.steepness;

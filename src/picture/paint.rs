@@ -8,7 +8,7 @@ use super::cover::Palette;
 use super::field::Field;
 use super::light::Relief;
 use super::water::{self, Lakes};
-use super::{MapFrame, MapStyle, opaque};
+use super::{MapFrame, MapStyle, cover, opaque};
 use crate::surface::Surface;
 
 /// Heights that count as summits at least and at most, metres: hills are not painted as if they were the Alps.
@@ -68,7 +68,24 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
         .clamp(SUMMITS.0, SUMMITS.1);
 
     let mut pixmap = Pixmap::new(frame.width, frame.height)?;
-    let extent_height = frame.extent.height as f32;
+    let place = |x: f32, y: f32| {
+        (
+            (x + 0.5) * metres_per_pixel,
+            frame.extent.height as f32 - (y + 0.5) * metres_per_pixel,
+        )
+    };
+    // A quarter of the noise's finest wave.
+    let coarse = (600.0 / metres_per_pixel).max(1.0);
+    let broad = {
+        let columns = (width as f32 / coarse) as usize + 2;
+        let rows = (height as f32 / coarse) as usize + 2;
+        let at = |i: usize| place((i % columns) as f32 * coarse, (i / columns) as f32 * coarse);
+        Field {
+            width: columns,
+            height: rows,
+            data: (0..columns * rows).map(|i| cover::broad_noise(at(i))).collect(),
+        }
+    };
     pixmap
         .pixels_mut()
         .par_chunks_mut(width)
@@ -79,11 +96,9 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
                 let z = ground.data[i];
                 let height_share = smoothstep(0.0, summit, z);
                 let spot = relief.spot(x, y, height_share);
-                let at = (
-                    (x as f32 + 0.5) * metres_per_pixel,
-                    extent_height - (y as f32 + 0.5) * metres_per_pixel,
-                );
-                let mut colour = palette.land(at, z, floodplain.at(x, y), &spot) * spot.light;
+                let at = place(x as f32, y as f32);
+                let broad = broad.sample(x as f32 / coarse, y as f32 / coarse);
+                let mut colour = palette.land(at, z, broad, floodplain.at(x, y), &spot) * spot.light;
                 let wet = lakes.cover.data[i];
                 if wet > 0.0 {
                     let still = palette.lake(lakes.depth.data[i]) * (0.75 + 0.25 * spot.sky);
