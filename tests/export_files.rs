@@ -1,6 +1,6 @@
 //! Every writer, read back by other means.
 
-#![allow(clippy::unwrap_used, reason = "helpers fail tests by panicking")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod picture_common;
 

@@ -1,6 +1,6 @@
 //! Maps read from files: their values, the rules by which a channel is picked, and what is refused.
 
-#![allow(clippy::unwrap_used, reason = "helpers fail tests by panicking")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod picture_common;
 

@@ -1,6 +1,6 @@
 //! Facts a relief map must show, whatever its taste.
 
-#![allow(clippy::unwrap_used, reason = "helpers fail tests by panicking")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod picture_common;
 
