@@ -1,5 +1,7 @@
 //! Every writer, read back by other means.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod picture_common;
 
 use std::io::Cursor;
@@ -266,7 +268,7 @@ fn files_appear_whole_or_not_at_all() {
 
     let error = out
         .write("a.txt", |file| {
-            file.write_all(&[7; 100_000])?;
+            file.write_all(&vec![7; 100_000])?;
             Err(std::io::Error::other("the encoder gave up"))
         })
         .unwrap_err();

@@ -1,5 +1,7 @@
 //! Maps read from files: their values, the rules by which a channel is picked, and what is refused.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod picture_common;
 
 use std::io::Cursor;

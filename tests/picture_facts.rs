@@ -1,5 +1,7 @@
 //! Facts a relief map must show, whatever its taste.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod picture_common;
 
 use std::io::Cursor;
@@ -252,8 +254,12 @@ fn rivers_run_where_they_are_and_grow() {
         river(&[DVec2::new(8e3, 6e3), DVec2::new(56e3, 6e3)], 30e6),
     ];
     let image = map(&wet);
-    let [r, _, b] = pixel(&image, DVec2::new(40e3, 30e3));
-    assert!(b > r + 30.0, "water is blue: {r} {b}");
+    // On flat land a river may wander within half the distance between data points: one pixel here.
+    let bluest = (-1..=1)
+        .map(|dy| pixel(&image, DVec2::new(40e3, 30e3 + 100.0 * f64::from(dy))))
+        .map(|[r, _, b]| b - r)
+        .fold(0.0, f32::max);
+    assert!(bluest > 30.0, "water is blue: {bluest}");
     let changed = |south: f64, north: f64| {
         differing(&map(&dry), &image)
             .iter()

@@ -8,6 +8,7 @@ use super::noise;
 
 /// The colours of the map, in linear light. Greens are never loud, rock is warm, shadows come from the light.
 pub(super) struct Palette {
+    lowland: f32,
     open: Ramp,
     wood: Ramp,
     rock: Ramp,
@@ -19,14 +20,23 @@ pub(super) struct Palette {
     haze: Vec3,
 }
 
+/// Variation of the cover over several kilometres, at a place (east, north, metres). It is smooth enough to be
+/// computed on a coarse grid.
+pub(super) fn broad_noise((east, north): (f32, f32)) -> f32 {
+    noise::fractal(east / 5200.0, north / 5200.0, 3, 11)
+}
+
 impl Palette {
-    pub(super) fn new() -> Self {
+    /// For land whose plains lie at about `lowland` metres.
+    pub(super) fn new(lowland: f32) -> Self {
         Self {
+            lowland,
             open: Ramp::new(&[
-                (-250.0, 0xc6_d3b0),
-                (-60.0, 0xd3_dab9),
-                (80.0, 0xdf_dfbf),
-                (300.0, 0xe4_e0bf),
+                (-40.0, 0xc6_cfb0),
+                (15.0, 0xd2_d6b6),
+                (60.0, 0xdd_dcbc),
+                (180.0, 0xe5_e1c0),
+                (400.0, 0xe2_deb9),
                 (800.0, 0xda_d9b0),
                 (1500.0, 0xcd_cfa3),
                 (2100.0, 0xc8_c6a4),
@@ -34,10 +44,10 @@ impl Palette {
                 (3600.0, 0xd8_d3cb),
             ]),
             wood: Ramp::new(&[
-                (-200.0, 0xa8_ba96),
-                (400.0, 0x98_ad85),
-                (1200.0, 0x84_9b76),
-                (1900.0, 0x7d_9173),
+                (-200.0, 0xab_ba99),
+                (400.0, 0x9b_ac88),
+                (1200.0, 0x88_9a79),
+                (1900.0, 0x80_9175),
             ]),
             rock: Ramp::new(&[(500.0, 0xb4_a794), (1800.0, 0xa8_a29b), (3200.0, 0xa9_a6a6)]),
             scree: linear(0xc8_bfae),
@@ -49,19 +59,19 @@ impl Palette {
         }
     }
 
-    /// Colour of the dry land at a place (east, north, metres) and height (metres). `floodplain` is 1 beside large
-    /// rivers.
-    pub(super) fn land(&self, at: (f32, f32), height: f32, floodplain: f32, spot: &Spot) -> Vec3 {
+    /// Colour of the dry land at a place (east, north, metres) and height (metres). `broad` is [`broad_noise`] there,
+    /// `floodplain` is 1 beside large rivers.
+    pub(super) fn land(&self, at: (f32, f32), height: f32, broad: f32, floodplain: f32, spot: &Spot) -> Vec3 {
         let (east, north) = at;
-        let broad = noise::fractal(east / 5200.0, north / 5200.0, 3, 11);
         let fine = noise::fractal(east / 1100.0, north / 1100.0, 3, 23);
         let border = 0.6 * broad + 0.4 * fine;
         let slope = spot.steepness;
 
-        // Hypsometric tints, with borders that wander.
+        // Hypsometric tints over the lowland, with borders that wander.
+        let over_lowland = height - self.lowland;
         let mut colour = self
             .open
-            .at(height + (40.0 + 0.1 * height.clamp(0.0, 1000.0)) * border);
+            .at(over_lowland + (20.0 + 0.1 * over_lowland.clamp(0.0, 1200.0)) * border);
 
         // The plains: a quilt of fields.
         let plain = 1.0 - smoothstep(0.05, 0.16, spot.form_steepness + 0.3 * slope);
@@ -86,10 +96,14 @@ impl Palette {
         let tree_line = 1850.0 - 130.0 * spot.northness + 190.0 * border;
         let below = 1.0 - smoothstep(tree_line - 260.0, tree_line + 60.0, height);
         let rooted = smoothstep(0.07, 0.26, slope) * (1.0 - smoothstep(0.85, 1.25, slope));
-        let patch = smoothstep(0.15, 0.75, 0.75 * broad + 0.40 * fine + 0.15 * meadow) * 0.55;
+        let patch = smoothstep(
+            0.22,
+            0.48,
+            0.42 * broad + 0.40 * fine + (spot.rise / 90.0).clamp(-0.4, 0.4),
+        ) * 0.62;
         let clearing = smoothstep(
-            -0.75,
-            0.05,
+            -0.85,
+            -0.25,
             fine + 0.5 * broad + 0.45 * spot.northness - 0.35 * spot.convexity,
         );
         let wood = below * (rooted * clearing).max(patch * (1.0 - smoothstep(0.85, 1.25, slope)));
@@ -109,7 +123,7 @@ impl Palette {
 
         // Snow: high, in the shade lower, in hollows lower, not on faces it slides from.
         let snow_line = 2900.0 - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
-        let lies = smoothstep(snow_line - 130.0, snow_line + 330.0, height);
+        let lies = smoothstep(snow_line - 90.0, snow_line + 190.0, height + 120.0 * fine);
         let slides = smoothstep(0.80, 1.15, slope + 0.08 * fine);
         colour.lerp(self.snow, lies * (1.0 - 0.85 * slides))
     }

@@ -228,9 +228,9 @@ mod tests {
             let field = Field::resampled(&plane, width, height);
             let expected = Raster::from_fn(width, height, extent, |p| (p.x + 10.0 * p.y) as f32);
             let inner = (height / 2) * width + width / 2;
-            // Averaging kernels centre on fractions of cells: two hundredths of a cell is what that costs.
+            // Averaging kernels centre on fractions of cells: three hundredths of a cell is what that costs.
             let error = (field.data[inner] - expected.data[inner]).abs();
-            assert!(error < 0.02 * 220.0, "{error}");
+            assert!(error < 0.03 * 220.0, "{error}");
             assert!(
                 field.data[0] > field.data[(height - 1) * width],
                 "north stays the first row"

@@ -27,7 +27,7 @@ const SKY_PIXELS: usize = 700_000;
 
 /// Colours of light. Flat open ground receives exactly white.
 const SUN: Vec3 = Vec3::new(1.0, 0.93, 0.77);
-const SKY: Vec3 = Vec3::new(0.50, 0.69, 1.0);
+const SKY: Vec3 = Vec3::new(0.43, 0.63, 1.0);
 /// Share of the light on flat ground that comes from the sun.
 const SUN_SHARE: f32 = 0.66;
 
@@ -47,6 +47,8 @@ pub(super) struct Relief {
     gully_wavelength: f32,
     /// Vertical exaggeration that is in the heights.
     exaggeration: f32,
+    /// Metres per unit of height.
+    metres_per_unit: f32,
 }
 
 /// Land and light at one pixel.
@@ -62,6 +64,8 @@ pub(super) struct Spot {
     pub(super) northness: f32,
     /// Ridges positive, hollows negative, about −1 to 1.
     pub(super) convexity: f32,
+    /// Height over the land some kilometres around, metres.
+    pub(super) rise: f32,
     /// Part of the sky seen.
     pub(super) sky: f32,
 }
@@ -92,6 +96,7 @@ impl Relief {
                 0.0
             },
             exaggeration,
+            metres_per_unit: 1.0 / scale,
         }
     }
 
@@ -130,13 +135,13 @@ impl Relief {
         let white = SUN * SUN_SHARE + SKY * (1.0 - SUN_SHARE);
         let light = (SUN * (SUN_SHARE * sun) + SKY * ((1.0 - SUN_SHARE) * dome)) / white;
         // Low land is seen through more air: its lights and shadows are weaker.
-        let contrast = 0.92 + 0.22 * height_share;
+        let contrast = 0.95 + 0.25 * height_share;
         let light = Vec3::ONE + (light - Vec3::ONE) * contrast;
 
         let true_steepness = length(slope) / self.exaggeration;
         let bend = self.ground.data[i] - self.slopes.data[i];
         Spot {
-            light: shoulder(light.max(Vec3::splat(0.06))),
+            light: shoulder(light.max(Vec3::ZERO)),
             steepness: true_steepness,
             form_steepness: length(form) / self.exaggeration,
             northness: if steep > 1e-6 {
@@ -145,8 +150,16 @@ impl Relief {
                 0.0
             },
             convexity: (bend / (0.25 * self.gully_wavelength.max(3.0))).clamp(-1.0, 1.0) + furrow,
+            rise: (self.slopes.data[i] - self.forms.data[i]) * self.metres_per_unit,
             sky,
         }
+    }
+
+    /// True steepness (tangent) of the smoothed land at a pixel position.
+    pub(super) fn steepness_at(&self, x: f32, y: f32) -> f32 {
+        let x = x.clamp(0.0, (self.ground.width - 1) as f32) as usize;
+        let y = y.clamp(0.0, (self.ground.height - 1) as f32) as usize;
+        length(self.slopes.gradient(x, y)) / self.exaggeration
     }
 
     /// Gradient and profile of gullies down the slope, in two generations, the finer ones running into the coarser.
@@ -157,7 +170,7 @@ impl Relief {
         let (east, north) = (x as f32, -(y as f32));
         // Some slopes are carved, others smooth.
         let reach = 5.0 * wavelength;
-        let carving = 0.55 + 0.45 * noise::value(east / reach, north / reach, 0x51);
+        let carving = 0.55 + 0.45 * noise::gradient(east / reach, north / reach, 0x51);
         let mut strength = 0.55 * carving * steep.min(1.0) * smoothstep(0.08, 0.40, steep);
         let (mut carved, mut profile, mut share) = ((0.0, 0.0), 0.0, 0.6);
         for generation in 0..3 {
@@ -227,19 +240,22 @@ fn sun_on(slope: (f32, f32)) -> f32 {
     0.72 * sun + 0.28 * oblique
 }
 
-/// Factor by which slopes of some steepness are lit steeper than they are, as draughtsmen do in the lowlands: nine
-/// where it is almost flat, none in the mountains. `s (1 + 8/(1 + s²))` is the strongest such curve that still
-/// never lights a steeper slope less.
+/// Factor by which slopes of some steepness are lit steeper than they are, as draughtsmen do in the lowlands: eleven
+/// where it is almost flat, next to none in the mountains. `s + 0.09 (1 − exp(−s/0.009))` lights no steeper slope
+/// less.
 fn lowland_gain(steepness: f32) -> f32 {
-    const TURN: f32 = 0.018;
-    let s = steepness / TURN;
-    1.0 + 8.0 / (1.0 + s * s)
+    const LIFT: f32 = 0.09;
+    const TURN: f32 = 0.009;
+    let s = steepness.max(1e-5);
+    1.0 + LIFT * (1.0 - (-s / TURN).exp()) / s
 }
 
-/// Light above that on flat ground is pressed together, so that snow in the sun keeps its form.
+/// Light pressed together away from that on flat ground, so that snow in the sun and rock in the shade keep their
+/// form.
 fn shoulder(light: Vec3) -> Vec3 {
     let over = (light - Vec3::ONE).max(Vec3::ZERO);
-    light - over + over / (Vec3::ONE + 1.6 * over)
+    let under = (Vec3::ONE - light).max(Vec3::ZERO);
+    Vec3::ONE + over / (Vec3::ONE + 1.6 * over) - under / (Vec3::ONE + 0.22 * under)
 }
 
 fn length(v: (f32, f32)) -> f32 {

@@ -43,7 +43,6 @@ pub fn relief_map(surface: &Surface, style: &MapStyle, width: u32, height: u32) 
 fn draw(surface: &Surface, style: &MapStyle, width: u32, height: u32) -> Option<Pixmap> {
     let frame = MapFrame::new(surface.height.extent, style, width, height);
     let mut land = paint::land(surface, style, frame)?;
-    water::draw_rivers(&mut land, surface, frame);
     if style.marks {
         ink::draw_marks(&mut land, surface, frame);
     }

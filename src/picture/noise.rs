@@ -18,27 +18,33 @@ fn unit(word: u32) -> f32 {
     (word >> 8) as f32 / (1 << 24) as f32
 }
 
-/// Value noise in [−1, 1], of wavelength about two (Perlin's quintic between lattice values).
+/// Gradient noise in about [−1, 1], of wavelength about two (Perlin 2002).
 #[inline]
-pub(super) fn value(x: f32, y: f32, seed: u32) -> f32 {
+pub(super) fn gradient(x: f32, y: f32, seed: u32) -> f32 {
     let (x0, y0) = (x.floor(), y.floor());
     let (fx, fy) = (x - x0, y - y0);
     let (ix, iy) = (x0 as i32, y0 as i32);
     let ease = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let (u, v) = (ease(fx), ease(fy));
-    let at = |dx: i32, dy: i32| unit(hash(ix.wrapping_add(dx), iy.wrapping_add(dy), seed));
+    // The two halves of a word make a slope in each direction: all directions, no table.
+    let at = |dx: i32, dy: i32| {
+        let word = hash(ix.wrapping_add(dx), iy.wrapping_add(dy), seed);
+        let east = (word & 0xffff) as f32 * (1.0 / 32768.0) - 1.0;
+        let north = (word >> 16) as f32 * (1.0 / 32768.0) - 1.0;
+        east * (fx - dx as f32) + north * (fy - dy as f32)
+    };
     let south = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
     let north = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
-    (south + (north - south) * v) * 2.0 - 1.0
+    1.6 * (south + (north - south) * v)
 }
 
-/// Octaves of [`value`], each half as large and twice as fine, scaled to about [−1, 1]. Octaves are turned against
+/// Octaves of [`gradient`], each half as large and twice as fine, scaled to about [−1, 1]. Octaves are turned against
 /// each other, so that the lattice does not show.
 #[inline]
 pub(super) fn fractal(mut x: f32, mut y: f32, octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut amplitude, mut total) = (0.0, 1.0, 0.0);
     for octave in 0..octaves {
-        sum += amplitude * value(x, y, seed.wrapping_add(octave));
+        sum += amplitude * gradient(x, y, seed.wrapping_add(octave));
         total += amplitude;
         amplitude *= 0.5;
         (x, y) = (1.6 * x + 1.2 * y + 17.3, -1.2 * x + 1.6 * y - 9.1);

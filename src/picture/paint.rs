@@ -8,23 +8,48 @@ use super::cover::Palette;
 use super::field::Field;
 use super::light::Relief;
 use super::water::{self, Lakes};
-use super::{MapFrame, MapStyle, opaque};
+use super::{MapFrame, MapStyle, cover, opaque};
 use crate::surface::Surface;
 
 /// Heights that count as summits at least and at most, metres: hills are not painted as if they were the Alps.
 const SUMMITS: (f32, f32) = (1400.0, 4200.0);
 
-/// The land's pixels, without lines and letters.
+/// Heights on the pixels. The outermost nodes of a mesh are held by its border condition and make a rim around the
+/// land: the land just inside goes on to the edge in their place.
+fn ground(surface: &Surface, width: usize, height: usize, spacing: f32) -> Field {
+    let field = Field::resampled(&surface.height, width, height);
+    let rim = |side: usize| ((1.5 * spacing) as usize).min((side - 1) / 2);
+    let (rim_x, rim_y) = (rim(width), rim(height));
+    let mut ground = field.clone();
+    ground
+        .data
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| {
+            let inside = y.clamp(rim_y, height - 1 - rim_y) * width;
+            for (x, z) in row.iter_mut().enumerate() {
+                let value = field.data[inside + x.clamp(rim_x, width - 1 - rim_x)];
+                *z = if value.is_finite() { value } else { 0.0 };
+            }
+        });
+    ground
+}
+
+/// Height of the plains: a seventh of the land lies lower. Land that is all mountains keeps the sea's.
+fn lowland(ground: &Field) -> f32 {
+    const EVERY: usize = 97;
+    let mut heights: Vec<f32> = ground.data.iter().copied().step_by(EVERY).collect();
+    let seventh = heights.len() / 7;
+    let (_, lowland, _) = heights.select_nth_unstable_by(seventh, f32::total_cmp);
+    lowland.clamp(-400.0, 400.0)
+}
+
+/// The land's pixels, with its water and without marks and letters.
 pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Option<Pixmap> {
     let (width, height) = (frame.width as usize, frame.height as usize);
     let metres_per_pixel = frame.metres_per_pixel() as f32;
-    let mut ground = Field::resampled(&surface.height, width, height);
-    ground.data.par_iter_mut().for_each(|z| {
-        if !z.is_finite() {
-            *z = 0.0;
-        }
-    });
     let spacing = (surface.spacing / frame.metres_per_pixel()) as f32;
+    let ground = ground(surface, width, height, spacing);
     let relief = Relief::new(
         &ground,
         metres_per_pixel,
@@ -32,8 +57,9 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
         style.vertical_exaggeration as f32,
     );
     let lakes = Lakes::new(surface, width, height, spacing);
-    let floodplain = water::floodplain(surface, frame);
-    let palette = Palette::new();
+    let courses = water::courses(surface, &relief, frame);
+    let floodplain = water::floodplain(&courses, frame);
+    let palette = Palette::new(lowland(&ground));
     let encoder = Encoder::new();
     let summit = ground
         .data
@@ -42,7 +68,24 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
         .clamp(SUMMITS.0, SUMMITS.1);
 
     let mut pixmap = Pixmap::new(frame.width, frame.height)?;
-    let extent_height = frame.extent.height as f32;
+    let place = |x: f32, y: f32| {
+        (
+            (x + 0.5) * metres_per_pixel,
+            frame.extent.height as f32 - (y + 0.5) * metres_per_pixel,
+        )
+    };
+    // A quarter of the noise's finest wave.
+    let coarse = (600.0 / metres_per_pixel).max(1.0);
+    let broad = {
+        let columns = (width as f32 / coarse) as usize + 2;
+        let rows = (height as f32 / coarse) as usize + 2;
+        let at = |i: usize| place((i % columns) as f32 * coarse, (i / columns) as f32 * coarse);
+        Field {
+            width: columns,
+            height: rows,
+            data: (0..columns * rows).map(|i| cover::broad_noise(at(i))).collect(),
+        }
+    };
     pixmap
         .pixels_mut()
         .par_chunks_mut(width)
@@ -53,11 +96,9 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
                 let z = ground.data[i];
                 let height_share = smoothstep(0.0, summit, z);
                 let spot = relief.spot(x, y, height_share);
-                let at = (
-                    (x as f32 + 0.5) * metres_per_pixel,
-                    extent_height - (y as f32 + 0.5) * metres_per_pixel,
-                );
-                let mut colour = palette.land(at, z, floodplain.at(x, y), &spot) * spot.light;
+                let at = place(x as f32, y as f32);
+                let broad = broad.sample(x as f32 / coarse, y as f32 / coarse);
+                let mut colour = palette.land(at, z, broad, floodplain.at(x, y), &spot) * spot.light;
                 let wet = lakes.cover.data[i];
                 if wet > 0.0 {
                     let still = palette.lake(lakes.depth.data[i]) * (0.75 + 0.25 * spot.sky);
@@ -68,5 +109,6 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
                 *pixel = opaque(encoder.encode(palette.through_air(colour, height_share)));
             }
         });
+    water::draw(&mut pixmap, &courses, frame);
     Some(pixmap)
 }

@@ -4,6 +4,7 @@
     unreachable_pub,
     reason = "each test file uses its part of this module"
 )]
+#![allow(clippy::unwrap_used, reason = "readers fail tests by panicking")]
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -32,7 +33,6 @@ pub fn surface(width: usize, height: usize, summit: DVec2) -> Surface {
     Surface {
         height: Raster::from_fn(width, height, LAND, mountain(summit)),
         lake_depth: Raster::from_fn(width, height, LAND, flat),
-        drainage: Raster::from_fn(width, height, LAND, flat),
         spacing: LAND.width / width as f64,
         rivers: Vec::new(),
         plates: Vec::new(),
@@ -132,11 +132,12 @@ pub fn read_ply(bytes: &[u8]) -> Ply {
     let (mut vertices, mut faces, mut properties) = (0, 0, Vec::new());
     for line in header.lines() {
         match line.split(' ').collect::<Vec<_>>().as_slice() {
-            ["ply" | "end_header"] | ["format", "binary_little_endian", "1.0"] => {}
+            ["ply" | "end_header"]
+            | ["format", "binary_little_endian", "1.0"]
+            | ["property", "list", "uchar", "int", "vertex_indices"] => {}
             ["comment", words @ ..] => ply.comments.push(words.join(" ")),
             ["element", "vertex", n] => vertices = n.parse().unwrap(),
             ["element", "face", n] => faces = n.parse().unwrap(),
-            ["property", "list", "uchar", "int", "vertex_indices"] => {}
             ["property", kind @ ("float" | "int"), name] => properties.push((*kind, (*name).to_owned())),
             other => panic!("unexpected header line {other:?}"),
         }
