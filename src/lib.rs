@@ -3,6 +3,7 @@
 pub mod units;
 
 pub mod gesture;
+pub mod input;
 pub mod mountain;
 pub mod surface;
 pub mod terrain;
