@@ -4,7 +4,7 @@ mod bench;
 mod console;
 mod erode;
 mod failure;
-//mod import;
+mod import;
 mod output;
 mod replay;
 
@@ -196,7 +196,7 @@ pub fn main() -> ExitCode {
         None => replay::builtin(console),
         Some(Command::Replay(args)) => replay::run(&args, console),
         Some(Command::Erode(args)) => erode::run(&args, console),
-        Some(Command::Import(_)) => Ok(()),
+        Some(Command::Import(args)) => import::run(&args, console),
         Some(Command::Bench(args)) => bench::run(&args, console),
     };
     match done {

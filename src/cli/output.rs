@@ -22,7 +22,7 @@ use crate::units::KM;
 /// Drainage area from which a stream counts as a river in `rivers.geojson`, m².
 const RIVER_AREA: f64 = 10.0 * KM * KM;
 /// Drainage area from which a stream is drawn on the map, m².
-const DRAWN_RIVER_AREA: f64 = 20.0 * KM * KM;
+const DRAWN_RIVER_AREA: f64 = 15.0 * KM * KM;
 
 /// How long the parts of a run took.
 #[derive(Debug)]
@@ -101,20 +101,32 @@ impl LandFiles<'_> {
         let water = Water::new(&self);
         let rivers = rivers::trace(water.graph(&self), RIVER_AREA);
         let uplift_map = raster.linear(uplift);
+        let drainage_map = raster.linear(flow.drainage());
         let surface = self.surface(&raster, &water);
         timings.lap("rasters");
 
-        let map_png = match picture {
+        let texture = match picture {
             PictureChoice::None => None,
-            PictureChoice::Map => Some(map_png(&surface, &title)?),
+            PictureChoice::Map => {
+                let style = MapStyle {
+                    title,
+                    ..MapStyle::default()
+                };
+                let png = map_png(&surface, &style)?;
+                out.write("picture.png", |w| w.write_all(&png))
+                    .map_err(Failure::other)?;
+                // The mesh wears the land alone, to the edge.
+                let bare = MapStyle {
+                    marks: false,
+                    lettering: false,
+                    ..MapStyle::default()
+                };
+                Some(map_png(&surface, &bare)?)
+            }
         };
-        if let Some(png) = &map_png {
-            out.write("picture.png", |w| w.write_all(png))
-                .map_err(Failure::other)?;
-        }
         timings.lap("picture");
 
-        write_height_maps(out, &surface, &uplift_map)?;
+        write_height_maps(out, &surface.height, &uplift_map, &drainage_map)?;
         timings.lap("height_maps");
         let mesh = Mesh {
             positions: tin.positions(),
@@ -131,7 +143,7 @@ impl LandFiles<'_> {
         out.write("terrain.ply", |w| ply::write(w, mesh, values))
             .map_err(Failure::other)?;
         out.write("terrain.glb", |w| {
-            glb::write(w, mesh, tin.extent(), map_png.as_deref())
+            glb::write(w, mesh, tin.extent(), texture.as_deref())
         })
         .map_err(Failure::other)?;
         write_rivers(out, tin, &rivers)?;
@@ -149,7 +161,6 @@ impl LandFiles<'_> {
         Surface {
             height: field(raster.smooth(self.tin, self.z)),
             lake_depth: field(raster.linear(&water.lake_depth)),
-            drainage: field(raster.linear(self.flow.drainage())),
             spacing: self.tin.spacing(),
             rivers: rivers::drawn(water.graph(&self), DRAWN_RIVER_AREA),
             plates: self.marks.plates,
@@ -195,26 +206,21 @@ fn rows(tin: &Tin, columns: u32) -> usize {
     ((f64::from(columns) * extent.height / extent.width).round() as usize).max(1)
 }
 
-fn map_png(surface: &Surface, title: &str) -> Result<Vec<u8>, Failure> {
-    let style = MapStyle {
-        title: title.to_owned(),
-        ..MapStyle::default()
-    };
-    let map = relief_map(
-        surface,
-        &style,
-        surface.height.width as u32,
-        surface.height.height as u32,
-    );
+fn map_png(surface: &Surface, style: &MapStyle) -> Result<Vec<u8>, Failure> {
+    let map = relief_map(surface, style, surface.height.width as u32, surface.height.height as u32);
     let mut png = Cursor::new(Vec::new());
     map.write_to(&mut png, ImageFormat::Png).map_err(Failure::other)?;
     Ok(png.into_inner())
 }
 
-fn write_height_maps(out: &OutDir, surface: &Surface, uplift: &[f32]) -> Result<(), Failure> {
-    let height = &surface.height;
+fn write_height_maps(
+    out: &OutDir,
+    height: &Raster,
+    uplift: &[f32],
+    drainage: &[f32],
+) -> Result<(), Failure> {
     let slope = height.slope();
-    let drainage_km2: Vec<f32> = surface.drainage.data.iter().map(|a| a / 1e6).collect();
+    let drainage_km2: Vec<f32> = drainage.iter().map(|a| a / 1e6).collect();
     let channels: [(&str, &[f32]); 4] = [
         ("height_m", &height.data),
         ("uplift_m_per_yr", uplift),
@@ -278,7 +284,8 @@ pub(super) fn draw_frame(out: &OutDir, name: &str, sim: &Sim, title: &str, size:
     let flow = sim.flow();
     let land = land_of(sim, &flow, &[], title);
     let water = Water::new(&land);
-    let png = map_png(&land.surface(&raster, &water), title)?;
+    let style = MapStyle { title: title.to_owned(), ..MapStyle::default() };
+    let png = map_png(&land.surface(&raster, &water), &style)?;
     out.write(name, |w| w.write_all(&png))
         .map(drop)
         .map_err(Failure::other)

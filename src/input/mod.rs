@@ -1,3 +1,4 @@
-//! What comes from outside: maps.
+//! What comes from outside: maps, and recordings of other tools that become contacts.
 
+pub mod evemu;
 pub mod maps;

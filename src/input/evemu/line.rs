@@ -1,0 +1,224 @@
+//! One line of a recording.
+
+use serde_json::Value;
+
+use super::axes::Axis;
+use crate::gesture::json::Expected;
+
+// Linux kernel, include/uapi/linux/input-event-codes.h.
+pub(super) const EV_SYN: u16 = 0;
+pub(super) const EV_ABS: u16 = 3;
+pub(super) const SYN_REPORT: u16 = 0;
+pub(super) const SYN_MT_REPORT: u16 = 2;
+pub(super) const SYN_DROPPED: u16 = 3;
+pub(super) const ABS_MT_SLOT: u16 = 0x2f;
+pub(super) const ABS_MT_TOUCH_MAJOR: u16 = 0x30;
+pub(super) const ABS_MT_TOUCH_MINOR: u16 = 0x31;
+pub(super) const ABS_MT_WIDTH_MAJOR: u16 = 0x32;
+pub(super) const ABS_MT_WIDTH_MINOR: u16 = 0x33;
+pub(super) const ABS_MT_ORIENTATION: u16 = 0x34;
+pub(super) const ABS_MT_POSITION_X: u16 = 0x35;
+pub(super) const ABS_MT_POSITION_Y: u16 = 0x36;
+pub(super) const ABS_MT_TOOL_TYPE: u16 = 0x37;
+pub(super) const ABS_MT_TRACKING_ID: u16 = 0x39;
+/// Value of `ABS_MT_TOOL_TYPE`.
+pub(super) const MT_TOOL_PALM: i32 = 2;
+
+/// What a line says.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Line {
+    /// Nothing of interest: identity, properties, key masks, lamps, switches, or an empty line.
+    Nothing,
+    /// `N:` the device's name.
+    Name(String),
+    /// `#`, with what follows it.
+    Comment(String),
+    /// `A:` an absolute axis: its code and range.
+    Axis(u16, Axis),
+    /// `E:` an event.
+    Event(Event),
+}
+
+/// An event of the kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Event {
+    /// Time, µs since some epoch.
+    pub(super) t_us: u64,
+    /// `EV_…`
+    pub(super) kind: u16,
+    pub(super) code: u16,
+    pub(super) value: i32,
+}
+
+impl Line {
+    pub(super) fn parse(text: &str) -> Result<Self, Expected> {
+        let text = text.trim();
+        if let Some(comment) = text.strip_prefix('#') {
+            return Ok(Self::Comment(comment.to_owned()));
+        }
+        let Some((kind, rest)) = text.split_once(':') else {
+            return if text.is_empty() {
+                Ok(Self::Nothing)
+            } else {
+                Err(unknown(text))
+            };
+        };
+        match kind {
+            "N" => Ok(match rest.trim() {
+                "" => Self::Nothing,
+                name => Self::Name(name.to_owned()),
+            }),
+            "I" | "P" | "B" | "L" | "S" => Ok(Self::Nothing),
+            "A" => axis(uncommented(rest)),
+            "E" => event(uncommented(rest)),
+            _ => Err(unknown(text)),
+        }
+    }
+}
+
+fn unknown(text: &str) -> Expected {
+    Expected::new(
+        "line",
+        "N:, I:, P:, B:, A:, L:, S:, E: or # of an evemu recording",
+        &Value::from(text),
+    )
+}
+
+/// Recorders name every event in a comment behind it.
+fn uncommented(rest: &str) -> &str {
+    rest.split('#').next().unwrap_or_default()
+}
+
+fn axis(rest: &str) -> Result<Line, Expected> {
+    let whole = || Expected::new("A", "A: code min max fuzz flat [resolution]", &Value::from(rest));
+    let fields: Vec<&str> = rest.split_whitespace().collect();
+    let (code, numbers) = fields.split_first().ok_or_else(whole)?;
+    let code = hexadecimal("A: code", code)?;
+    let numbers: Vec<i32> = numbers
+        .iter()
+        .map(|text| decimal("A", text))
+        .collect::<Result<_, _>>()?;
+    let (min, max, resolution) = match numbers[..] {
+        [min, max, _, _] => (min, max, None),
+        [min, max, _, _, resolution] => (min, max, Some(resolution)),
+        _ => return Err(whole()),
+    };
+    Ok(Line::Axis(
+        code,
+        Axis {
+            min: Some(min),
+            max: Some(max),
+            resolution,
+        },
+    ))
+}
+
+fn event(rest: &str) -> Result<Line, Expected> {
+    let mut fields = rest.split_whitespace();
+    let mut next = || fields.next();
+    let (Some(time), Some(kind), Some(code), Some(value), None) = (next(), next(), next(), next(), next())
+    else {
+        return Err(Expected::new(
+            "E",
+            "E: sec.usec type code value",
+            &Value::from(rest),
+        ));
+    };
+    Ok(Line::Event(Event {
+        t_us: micros(time)?,
+        kind: hexadecimal("E: type", kind)?,
+        code: hexadecimal("E: code", code)?,
+        value: decimal("E: value", value)?,
+    }))
+}
+
+fn micros(text: &str) -> Result<u64, Expected> {
+    let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
+    let parse = || {
+        // Fewer than six digits would be a fraction for some writers and a count for others.
+        let (sec, usec) = text
+            .split_once('.')
+            .filter(|(s, us)| digits(s) && digits(us) && us.len() == 6)?;
+        let sec: u64 = sec.parse().ok()?;
+        sec.checked_mul(1_000_000)?.checked_add(usec.parse().ok()?)
+    };
+    parse().ok_or_else(|| Expected::new("E: time", "seconds with six decimals", &Value::from(text)))
+}
+
+fn hexadecimal(field: &str, text: &str) -> Result<u16, Expected> {
+    Some(text)
+        .filter(|text| text.bytes().all(|b| b.is_ascii_hexdigit()))
+        .and_then(|text| u16::from_str_radix(text, 16).ok())
+        .ok_or_else(|| {
+            Expected::new(
+                field,
+                "a hexadecimal number of at most 16 bits",
+                &Value::from(text),
+            )
+        })
+}
+
+fn decimal(field: &str, text: &str) -> Result<i32, Expected> {
+    text.parse()
+        .map_err(|_| Expected::new(field, "a whole number of at most 32 bits", &Value::from(text)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_have_hexadecimal_codes_and_padded_decimal_values() {
+        let parse = |text| Line::parse(text).unwrap();
+        let event = |t_us, kind, code, value| {
+            Line::Event(Event {
+                t_us,
+                kind,
+                code,
+                value,
+            })
+        };
+        assert_eq!(
+            parse("E: 1369413382.137926 0003 0039 -001\t# EV_ABS / ABS_MT_TRACKING_ID   -1\n"),
+            event(1_369_413_382_137_926, EV_ABS, ABS_MT_TRACKING_ID, -1)
+        );
+        assert_eq!(
+            parse("E: 0.000001 0003 0035 0605\r\n"),
+            event(1, EV_ABS, ABS_MT_POSITION_X, 605)
+        );
+        for bad in [
+            "E: 1.5 0003 0035 1",
+            "E: -1.000000 0003 0035 1",
+            "E: 1.000000 0003 0035",
+            "E: 1.000000 0003 0035 1 1",
+            "E: 1.000000 00g3 0035 1",
+            "E: 1.000000 0003 +35 1",
+            "E: 1.000000 0003 0035 99999999999",
+            "E: 99999999999999999999.000000 0003 0035 1",
+            "E:",
+            "Q: 1",
+            "nonsense",
+        ] {
+            assert!(Line::parse(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn axes_may_have_a_resolution() {
+        let parse = |text| match Line::parse(text) {
+            Ok(Line::Axis(code, axis)) => Some((code, axis.min, axis.max, axis.resolution)),
+            _ => None,
+        };
+        assert_eq!(
+            parse("A: 35 -5 1279 0 0"),
+            Some((0x35, Some(-5), Some(1279), None))
+        );
+        assert_eq!(
+            parse("A: 36 0 767 0 0 10"),
+            Some((0x36, Some(0), Some(767), Some(10)))
+        );
+        for bad in ["A:", "A: 35", "A: 35 0 1", "A: 35 0 1 2 3 4 5", "A: 35 0 x 0 0"] {
+            assert!(Line::parse(bad).is_err(), "{bad}");
+        }
+    }
+}

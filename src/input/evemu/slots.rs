@@ -1,0 +1,196 @@
+//! The slots of protocol B: readings in, what contacts do out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::line::{
+    ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_TOOL_TYPE, ABS_MT_TOUCH_MAJOR,
+    ABS_MT_TOUCH_MINOR, ABS_MT_TRACKING_ID, ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR, MT_TOOL_PALM,
+};
+use crate::gesture::contact::Phase;
+
+/// A contact in device units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Touch {
+    pub(super) x: i32,
+    pub(super) y: i32,
+    /// Major and minor axis of the touching area, in the units of the position.
+    pub(super) ellipse: Option<(i32, i32)>,
+    pub(super) orientation: i32,
+    pub(super) palm: bool,
+}
+
+/// A contact and what happens to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RawEvent {
+    pub(super) phase: Phase,
+    pub(super) slot: u16,
+    pub(super) generation: u32,
+    pub(super) touch: Touch,
+}
+
+/// Who is in a slot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Tracking {
+    /// Not told since the recording began, or since events were dropped.
+    #[default]
+    Unknown,
+    /// A contact that was there before anything was told.
+    Unnamed,
+    /// A contact with its tracking id.
+    Named(i32),
+    /// Nobody.
+    Free,
+}
+
+#[derive(Debug, Default)]
+struct Slot {
+    tracking: Tracking,
+    /// The last value of each code: contacts inherit what the kernel does not repeat.
+    readings: BTreeMap<u16, i32>,
+    /// The contact that is down after the last frame.
+    shown: Option<Touch>,
+    /// True if that one lifted since.
+    lifted: bool,
+    /// How often a contact went down here.
+    downs: u32,
+}
+
+impl Slot {
+    fn touch(&self) -> Option<Touch> {
+        let get = |code| self.readings.get(&code).copied();
+        // Without a minor axis the area is round (kernel documentation).
+        let pair = |major, minor| get(major).map(|major| (major, get(minor).unwrap_or(major)));
+        Some(Touch {
+            x: get(ABS_MT_POSITION_X)?,
+            y: get(ABS_MT_POSITION_Y)?,
+            ellipse: pair(ABS_MT_TOUCH_MAJOR, ABS_MT_TOUCH_MINOR)
+                .or_else(|| pair(ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR)),
+            orientation: get(ABS_MT_ORIENTATION).unwrap_or(0),
+            palm: get(ABS_MT_TOOL_TYPE) == Some(MT_TOOL_PALM),
+        })
+    }
+}
+
+/// All slots of a device.
+#[derive(Debug, Default)]
+pub(super) struct Slots {
+    slots: BTreeMap<u16, Slot>,
+    /// The slot that events speak of.
+    selected: u16,
+    /// The slots of which the frame speaks.
+    touched: BTreeSet<u16>,
+    seen_x: bool,
+    seen_y: bool,
+    /// Contacts that were down before anything was told of them.
+    pub(super) mid_touch: usize,
+    /// Contacts of which no frame knew the whole position.
+    pub(super) unplaced: usize,
+}
+
+impl Slots {
+    pub(super) fn select(&mut self, slot: u16) {
+        self.selected = slot;
+    }
+
+    /// True if both coordinates were told at least once.
+    pub(super) fn has_positions(&self) -> bool {
+        self.seen_x && self.seen_y
+    }
+
+    /// Takes a reading of the selected slot; false if the code says nothing about contacts.
+    pub(super) fn read(&mut self, code: u16, value: i32) -> bool {
+        match code {
+            ABS_MT_TRACKING_ID => self.track(value),
+            ABS_MT_POSITION_X => self.seen_x = true,
+            ABS_MT_POSITION_Y => self.seen_y = true,
+            ABS_MT_TOUCH_MAJOR | ABS_MT_TOUCH_MINOR | ABS_MT_WIDTH_MAJOR | ABS_MT_WIDTH_MINOR
+            | ABS_MT_ORIENTATION | ABS_MT_TOOL_TYPE => {}
+            _ => return false,
+        }
+        self.touched.insert(self.selected);
+        if code != ABS_MT_TRACKING_ID {
+            let slot = self.slots.entry(self.selected).or_default();
+            slot.readings.insert(code, value);
+        }
+        true
+    }
+
+    /// The tracking id of the selected slot changes.
+    fn track(&mut self, id: i32) {
+        let slot = self.slots.entry(self.selected).or_default();
+        let now = if id < 0 {
+            Tracking::Free
+        } else {
+            Tracking::Named(id)
+        };
+        let before = std::mem::replace(&mut slot.tracking, now);
+        if before != now && matches!(before, Tracking::Named(_) | Tracking::Unnamed) {
+            if slot.shown.is_some() && !slot.lifted {
+                slot.lifted = true;
+            } else {
+                self.unplaced += 1;
+            }
+        }
+    }
+
+    /// The frame is complete: what its contacts do, slot by slot.
+    pub(super) fn report(&mut self) -> Vec<RawEvent> {
+        let mut events = Vec::new();
+        for number in std::mem::take(&mut self.touched) {
+            let slot = self.slots.entry(number).or_default();
+            let mut say = |phase, downs: u32, touch| {
+                events.push(RawEvent {
+                    phase,
+                    slot: number,
+                    generation: downs - 1,
+                    touch,
+                });
+            };
+            if std::mem::take(&mut slot.lifted)
+                && let Some(touch) = slot.shown.take()
+            {
+                say(Phase::Up, slot.downs, touch);
+            }
+            let Some(touch) = slot.touch() else { continue };
+            if slot.tracking == Tracking::Unknown {
+                slot.tracking = Tracking::Unnamed;
+                self.mid_touch += 1;
+            }
+            if slot.tracking == Tracking::Free {
+                continue;
+            }
+            match slot.shown.replace(touch) {
+                None => {
+                    slot.downs += 1;
+                    say(Phase::Down, slot.downs, touch);
+                }
+                Some(before) if before != touch => say(Phase::Move, slot.downs, touch),
+                Some(_) => {}
+            }
+        }
+        events
+    }
+
+    /// Cancels all contacts and forgets what slots read: events are missing, or the recording is over.
+    pub(super) fn drop_all(&mut self) -> Vec<RawEvent> {
+        self.touched.clear();
+        let mut events = Vec::new();
+        for (&number, slot) in &mut self.slots {
+            if let Some(touch) = slot.shown {
+                events.push(RawEvent {
+                    phase: Phase::Cancel,
+                    slot: number,
+                    generation: slot.downs - 1,
+                    touch,
+                });
+            } else if matches!(slot.tracking, Tracking::Named(_)) {
+                self.unplaced += 1;
+            }
+            *slot = Slot {
+                downs: slot.downs,
+                ..Slot::default()
+            };
+        }
+        events
+    }
+}
