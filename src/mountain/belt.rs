@@ -333,7 +333,8 @@ fn between(
         })
         .product();
     let weight = smoother((closing.abs() - 0.15) / 0.5)
-        * smoother((gap - 2.0 * KM) / (6.0 * KM))
+        // Hulls that nearly touch leave no room for a belt; it would be a wall along the slit.
+        * smoother((gap - 6.0 * KM) / (14.0 * KM))
         * (1.0 - smoother((gap - params.reach[0]) / (params.reach[1] - params.reach[0])))
         * smoother(1.0 + facing / (0.75 * fade))
         * smoother(relative.length() / (0.3 * (shift_a.length() + shift_b.length())))
@@ -354,7 +355,10 @@ fn between(
     let (edges, flanks, fault) = match (kind, at_a) {
         (Kind::Range, true) => ([stand - half, half - 2.0 * offset], [front, back], -1.0),
         (Kind::Range, false) => ([2.0 * offset - half, half - stand], [back, front], 1.0),
-        (Kind::Rift, _) => ([3.0 * offset - half, half - 3.0 * offset], [front, front], 0.0),
+        (Kind::Rift, _) => {
+            let half_width = (half - 3.0 * offset).min(params.rift_width / 2.0);
+            ([-half_width, half_width], [front, front], 0.0)
+        }
     };
     let bow = 0.3 * (edges[1] - edges[0]);
     Some(Belt {

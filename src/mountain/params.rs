@@ -36,14 +36,17 @@ pub struct MountainParams {
     pub gap_kept: f64,
     /// The rule from thickening to uplift. Default [`UpliftRule::Belts`].
     pub rule: UpliftRule,
-    /// `α`: uplift per unit of thickening `q − 1`. Default 3e-3 m/yr. Range 1e-4–1e-2.
+    /// `α`: uplift per unit of thickening `q − 1`. Default 2.6e-3 m/yr. Range 1e-4–1e-2.
     pub rise_per_thickening: f64,
     /// Uplift is softly capped here. Default 1.3e-3 m/yr. Range 1e-4–1e-2: real belts rarely exceed a few mm/yr, and
     /// summits grow with it.
     pub rise_limit: f64,
-    /// Subsidence of a rift is softly capped here (a positive rate). Default 0.8e-3 m/yr. Range 0–5e-3; 0 switches
-    /// rifts off.
+    /// Subsidence of a rift is softly capped here (a positive rate). Default 0.3e-3 m/yr: in the 5 My of a push that
+    /// is as deep as Baikal. Range 0–5e-3; 0 switches rifts off.
     pub sink_limit: f64,
+    /// Greatest width of a rift. Default 24 km. Range 5–100 km: real rifts are some 20–60 km wide however far apart
+    /// the plates that part (Kenya, Rhine, Baikal); wider ones become inland seas.
+    pub rift_width: f64,
     /// Mean uplift over `u0 > 0` under [`UpliftRule::Paper`]. Default 5e-4 m/yr.
     pub paper_mean: f64,
     /// Level of the fault's trace, as a part of the 95th percentile of what is raised. Default 0.25. Range 0.05–0.6:
@@ -87,9 +90,10 @@ impl Default for MountainParams {
             push_years: 5.0 * MYR,
             gap_kept: 0.35,
             rule: UpliftRule::Belts,
-            rise_per_thickening: 3e-3,
+            rise_per_thickening: 2.6e-3,
             rise_limit: 1.3e-3,
-            sink_limit: 0.8e-3,
+            sink_limit: 0.3e-3,
+            rift_width: 24.0 * KM,
             paper_mean: 5e-4,
             fault_level: 0.25,
             front_width: 5.0 * KM,

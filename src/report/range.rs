@@ -7,7 +7,7 @@ use crate::terrain::{Flow, Tin};
 use crate::units::KM;
 
 /// Land belongs to the range where uplift added at least this share of the most it added anywhere.
-const RANGE_SHARE: f64 = 0.25;
+const RANGE_SHARE: f64 = 0.1;
 /// Ground below this slope is valley floor, degrees.
 const FLOOR_DEG: f64 = 5.0;
 /// Window of the relief, metres.
@@ -16,7 +16,7 @@ const RELIEF_WINDOW: f64 = 10.0 * KM;
 /// What makes a range a range. All zero where nothing has risen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RangeFacts {
-    /// Area of the range, km²: where uplift added at least a quarter of the most it added anywhere.
+    /// Area of the range, km²: where uplift added at least a tenth of the most it added anywhere.
     pub range_area_km2: f64,
     /// Direction of the main divide, degrees from north, clockwise, 0–180.
     pub divide_azimuth_deg: f64,

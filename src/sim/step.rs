@@ -9,6 +9,7 @@ use crate::gesture::contact::{ContactKey, InputFrame, Side};
 use crate::gesture::event::{HandEvent, Leg};
 use crate::gesture::hand::{ContactStats, HandTracker};
 use crate::mountain::tectonics::TectonicReport;
+use crate::mountain::plate::Pair;
 use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateState, TectonicField, Tectonics};
 use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets};
 
@@ -414,16 +415,20 @@ impl Sim {
             *rate = 0.0;
             state.quarantine.uplift_nodes += 1;
         }
-        let pushed = drive.0.iter().any(|(_, doing)| *doing == PlateState::Pushing);
-        if pushed {
+        if drive.0.iter().any(|(_, doing)| *doing == PlateState::Pushing) {
             state.last_motion = Some(field.report);
         }
-        // A fault stays on the map when its push is spent.
-        let faults = if pushed {
-            field.faults.clone()
-        } else {
-            state.uplift.faults.clone()
+        // A fault stays on the map when its push is spent, as long as its plates stand.
+        let mut faults = field.faults.clone();
+        let stands = |pair: &Pair| {
+            let known = |id| drive.0.iter().any(|(plate, _)| *plate == id);
+            known(pair.first) && pair.second.is_none_or(known)
         };
+        for old in &state.uplift.faults {
+            if stands(&old.pair) && !field.faults.iter().any(|new| new.pair == old.pair) {
+                faults.push(old.clone());
+            }
+        }
         state.uplift = Arc::new(Uplift {
             field: field.uplift.clone(),
             at_nodes,

@@ -45,7 +45,7 @@ pub struct ErosionParams {
 impl Default for ErosionParams {
     fn default() -> Self {
         Self {
-            k: 2.0e-6,
+            k: 1.8e-6,
             m: 0.5,
             n: 1.0,
             // 30°
