@@ -55,10 +55,7 @@ fn one_finger_push() -> Show {
         "one finger pushes",
         "A short range rises across the way of the finger, and the land far from it stays as it is.",
     );
-    let pushed = push_finger(
-        &mut show,
-        straight(160.0, 1100.0, (520.0, 360.0), RIGHT * 100.0),
-    );
+    let pushed = push_finger(&mut show, straight(160.0, 1100.0, (520.0, 360.0), RIGHT * 100.0));
     rises(&mut show, &pushed);
     show
 }
@@ -123,8 +120,8 @@ fn twisting_hand() -> Show {
         "The land is heaped up where the outer fingers go, and sinks where they come from.",
     );
     show.rest(&five(RIGHT, 150.0), DVec2::new(300.0, 350.0), 160.0, 3800.0);
-    let (at, turn_deg) = (DVec2::new(720.0, 355.0), 50.0_f64);
-    show.push(
+    let (at, turn_deg) = (DVec2::new(720.0, 363.0), 50.0_f64);
+    let twisted = show.push(
         &five(LEFT, 184.0),
         Push {
             from_ms: 900.0,
@@ -134,10 +131,10 @@ fn twisting_hand() -> Show {
             turn_deg,
         },
     );
-    // Before the thumb and the little finger, which end 50° clockwise of the hand's landed axis and go on at right angles to it.
+    // Before the thumb and the little finger, at right angles to the arms they swing on.
     for end in [-1.0, 1.0] {
         let arm = toward(90.0 + turn_deg) * end;
-        show.changes(at + arm * 92.0 + arm.perp() * 50.0, 900.0 + 144.0 + 1800.0);
+        show.changes(at + arm * 92.0 + arm.perp() * 50.0, twisted.end_ms);
     }
     show
 }
@@ -195,10 +192,7 @@ fn four_visitors() -> Show {
     ];
     for (from_ms, at, deg) in visitors {
         let along = toward(deg);
-        let pushed = show.push(
-            &five(along, 140.0),
-            straight(from_ms, 1700.0, at, along * 100.0),
-        );
+        let pushed = show.push(&five(along, 140.0), straight(from_ms, 1700.0, at, along * 100.0));
         rises(&mut show, &pushed);
     }
     show
@@ -210,10 +204,7 @@ fn slow_and_fast() -> Show {
         "Two alike ranges: how far a finger goes counts, not how fast.",
     );
     let slow = push_finger(&mut show, straight(160.0, 4200.0, (300.0, 340.0), RIGHT * 95.0));
-    let fast = push_finger(
-        &mut show,
-        straight(2900.0, 240.0, (910.0, 340.0), LEFT * 95.0),
-    );
+    let fast = push_finger(&mut show, straight(2900.0, 240.0, (910.0, 340.0), LEFT * 95.0));
     rises(&mut show, &fast);
     rises(&mut show, &slow);
     show

@@ -77,7 +77,12 @@ fn readme(matters: &[Matter]) -> String {
         let header = &matter.file.header;
         let about = header.title.as_deref().unwrap_or_default();
         let see = header.expect.as_ref().and_then(|expect| expect.see.as_deref());
-        let _ = writeln!(out, "| `{}` | {about} | {} |", matter.name, see.unwrap_or_default());
+        let _ = writeln!(
+            out,
+            "| `{}` | {about} | {} |",
+            matter.name,
+            see.unwrap_or_default()
+        );
     }
     out
 }

@@ -116,7 +116,7 @@ pub(super) struct Push {
 }
 
 /// Time for which a hand stands before it goes, ms.
-const POISE_MS: f64 = 144.0;
+const POISE_MS: f64 = 64.0;
 
 /// Time for which it stands before it lifts, ms.
 const STAND_MS: f64 = 192.0;
@@ -293,7 +293,9 @@ fn sample(
         let contact = Contact {
             key,
             position: DVec2::new(quantise_mm(at.x), quantise_mm(at.y)),
-            size_mm: finger.size_at(t_ms),
+            size_mm: finger
+                .size_at(t_ms)
+                .map(|size| DVec2::new(quantise_mm(size.x), quantise_mm(size.y))),
             confidence: finger.confidence,
         };
         let phase = match reported {

@@ -25,23 +25,23 @@ const LEFT: DVec2 = DVec2::new(-1.0, 0.0);
 const RIGHT: DVec2 = DVec2::new(1.0, 0.0);
 
 fn drumming() -> Show {
-    let mut show = Show::new(
-        "drumming fingers",
-        "Small domes stand where the fingers drum.",
-    );
+    let mut show = Show::new("drumming fingers", "Small domes stand where the fingers drum.");
     let middle = DVec2::new(600.0, 340.0);
     let fingers: Vec<DVec2> = five(UP, 170.0).into_iter().skip(1).map(|f| middle + f).collect();
     // From the little finger to the index finger, again and again.
     let mut t_ms = 160.0;
-    for _ in 0..4 {
+    for round in 0..4 {
         for at in fingers.iter().rev() {
-            show.finger(Finger::new(vec![pose(t_ms, at.x, at.y), pose(t_ms + 80.0, at.x, at.y)]));
+            show.finger(Finger::new(vec![
+                pose(t_ms, at.x, at.y),
+                pose(t_ms + 80.0, at.x, at.y),
+            ]));
+            if round == 3 {
+                show.changes(*at, t_ms + 80.0);
+            }
             t_ms += 112.0;
         }
         t_ms += 160.0;
-    }
-    for at in fingers {
-        show.changes(at, t_ms);
     }
     show
 }
@@ -68,10 +68,7 @@ fn slapping() -> Show {
         let from_ms = 160.0 + 900.0 * i;
         for offset in five(UP, 165.0) {
             let at = at + offset;
-            let mut finger = Finger::new(vec![
-                pose(from_ms, at.x, at.y),
-                pose(from_ms + 112.0, at.x, at.y),
-            ]);
+            let mut finger = Finger::new(vec![pose(from_ms, at.x, at.y), pose(from_ms + 112.0, at.x, at.y)]);
             finger.sizes = vec![(from_ms, DVec2::new(13.0, 16.0))];
             show.finger(finger);
             show.changes(at, from_ms + 112.0);
