@@ -21,8 +21,9 @@ pub(super) const SCENES: [Scene; 12] = [
     ("finished_range_eroding", finished_range_eroding),
 ];
 
-/// Where land certainly rises before a push, mm ahead of its foremost finger: beyond the ground that moves with it.
-pub(super) const AHEAD_MM: f64 = 60.0;
+/// Where land rises before a push that nothing meets, mm ahead of its foremost finger: beyond the ground that moves
+/// with it.
+pub(super) const AHEAD_MM: f64 = 85.0;
 
 const UP: DVec2 = DVec2::new(0.0, -1.0);
 const DOWN: DVec2 = DVec2::new(0.0, 1.0);
@@ -66,15 +67,9 @@ fn two_hands_push() -> Show {
         "A wide range strikes north-south between the hands, slightly curved, highest before the moving hand.",
     );
     show.world(5e6, 60_000);
-    let pushed = range_between_hands(&mut show);
-    rises(&mut show, &pushed);
-    show
-}
-
-/// The left hand rests, the right one comes by 112 mm and turns a little; 330 mm are left between them.
-fn range_between_hands(show: &mut Show) -> Pushed {
+    // 330 mm, 48 km, are left between the hands.
     show.rest(&five(RIGHT, 184.0), DVec2::new(412.0, 363.0), 160.0, 4400.0);
-    show.push(
+    let pushed = show.push(
         &five(LEFT, 184.0),
         Push {
             from_ms: 900.0,
@@ -83,7 +78,9 @@ fn range_between_hands(show: &mut Show) -> Pushed {
             by: DVec2::new(-112.0, -4.0),
             turn_deg: 5.0,
         },
-    )
+    );
+    show.changes(DVec2::new(588.0, 350.0), pushed.end_ms);
+    show
 }
 
 fn hand_rests_other_pushes() -> Show {
@@ -96,7 +93,7 @@ fn hand_rests_other_pushes() -> Show {
         &five(UP, 160.0),
         straight(1000.0, 1600.0, (610.0, 540.0), UP * 95.0),
     );
-    rises(&mut show, &pushed);
+    show.changes(DVec2::new(603.0, 298.0), pushed.end_ms);
     show
 }
 
@@ -110,22 +107,21 @@ fn oblique_push() -> Show {
         &five(LEFT, 150.0),
         straight(900.0, 1800.0, (830.0, 430.0), toward(180.0 + 35.0) * 115.0),
     );
-    rises(&mut show, &pushed);
+    show.changes(DVec2::new(550.0, 305.0), pushed.end_ms);
     show
 }
 
 fn twisting_hand() -> Show {
     let mut show = Show::new(
         "a hand twists",
-        "The land is heaped up where the outer fingers go, and sinks where they come from.",
+        "Land is heaped up before the thumb and before the little finger, on opposite sides of the hand.",
     );
-    show.rest(&five(RIGHT, 150.0), DVec2::new(300.0, 350.0), 160.0, 3800.0);
-    let (at, turn_deg) = (DVec2::new(720.0, 363.0), 50.0_f64);
+    let (at, turn_deg) = (DVec2::new(600.0, 363.0), 60.0_f64);
     let twisted = show.push(
         &five(LEFT, 184.0),
         Push {
-            from_ms: 900.0,
-            for_ms: 1800.0,
+            from_ms: 160.0,
+            for_ms: 1500.0,
             at,
             by: DVec2::ZERO,
             turn_deg,
@@ -134,7 +130,7 @@ fn twisting_hand() -> Show {
     // Before the thumb and the little finger, at right angles to the arms they swing on.
     for end in [-1.0, 1.0] {
         let arm = toward(90.0 + turn_deg) * end;
-        show.changes(at + arm * 92.0 + arm.perp() * 50.0, twisted.end_ms);
+        show.changes(at + arm * 92.0 + arm.perp() * 85.0, twisted.end_ms);
     }
     show
 }
@@ -142,7 +138,7 @@ fn twisting_hand() -> Show {
 fn pull_apart() -> Show {
     let mut show = Show::new(
         "two hands pull apart",
-        "A rift basin sinks between the hands, and water gathers in it.",
+        "A rift basin sinks between the hands, and water gathers in it; a range rises before each hand.",
     );
     let left = show.push(
         &five(RIGHT, 150.0),
@@ -152,8 +148,9 @@ fn pull_apart() -> Show {
         &five(LEFT, 150.0),
         straight(240.0, 2200.0, (735.0, 355.0), RIGHT * 95.0),
     );
+    show.changes(DVec2::new(607.0, 355.0), left.end_ms.max(right.end_ms));
     for pushed in [&left, &right] {
-        show.changes(pushed.behind(AHEAD_MM), pushed.end_ms);
+        rises(&mut show, pushed);
     }
     show
 }
@@ -182,7 +179,7 @@ fn three_plates() -> Show {
 fn four_visitors() -> Show {
     let mut show = Show::new(
         "four visitors at once",
-        "Four ranges rise in the four quarters of the table, each before its own hand.",
+        "Land rises before each of the four hands; no visitor waits for another.",
     );
     let visitors = [
         (160.0, (190.0, 190.0), 20.0),
@@ -201,10 +198,10 @@ fn four_visitors() -> Show {
 fn slow_and_fast() -> Show {
     let mut show = Show::new(
         "a slow finger and a fast one",
-        "Two alike ranges: how far a finger goes counts, not how fast.",
+        "Two alike ranges side by side: how far a finger goes counts, not how fast.",
     );
-    let slow = push_finger(&mut show, straight(160.0, 4200.0, (300.0, 340.0), RIGHT * 95.0));
-    let fast = push_finger(&mut show, straight(2900.0, 240.0, (910.0, 340.0), LEFT * 95.0));
+    let slow = push_finger(&mut show, straight(160.0, 4200.0, (330.0, 470.0), UP * 95.0));
+    let fast = push_finger(&mut show, straight(2900.0, 240.0, (880.0, 470.0), UP * 95.0));
     rises(&mut show, &fast);
     rises(&mut show, &slow);
     show
@@ -254,6 +251,6 @@ fn finished_range_eroding() -> Show {
         &three(LEFT, 130.0),
         straight(900.0, 1300.0, (850.0, 345.0), LEFT * 100.0),
     );
-    rises(&mut show, &pushed);
+    show.changes(DVec2::new(580.0, 345.0), pushed.end_ms);
     show
 }

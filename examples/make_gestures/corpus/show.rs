@@ -92,12 +92,6 @@ impl Pushed {
         let reach = self.fingers.iter().map(|f| (f - self.at).dot(self.along));
         self.at + self.along * (reach.fold(0.0, f64::max) + mm)
     }
-
-    /// The place `mm` behind the rearmost finger.
-    pub(super) fn behind(&self, mm: f64) -> DVec2 {
-        let reach = self.fingers.iter().map(|f| (f - self.at).dot(self.along));
-        self.at + self.along * (reach.fold(0.0, f64::min) - mm)
-    }
 }
 
 /// How a hand pushes: it lands, waits for a moment, goes, stands, and lifts.

@@ -104,10 +104,9 @@ fn flicker() -> Show {
 fn stuck_contact() -> Show {
     let mut show = Show::new(
         "a contact that never leaves",
-        "Both hands raise their ranges, the first and the one 21 seconds later; nothing pins the land where the \
-         contact is stuck.",
+        "Both hands raise their ranges, the first and the one 21 seconds later, as if the contact were not there.",
     );
-    let mut stuck = Finger::new(vec![pose(0.0, 240.0, 180.0), pose(24_800.0, 240.0, 180.0)]);
+    let mut stuck = Finger::new(vec![pose(0.0, 1090.0, 130.0), pose(24_800.0, 1090.0, 130.0)]);
     stuck.frozen = true;
     show.finger(stuck);
     let first = show.push(
@@ -126,13 +125,13 @@ fn stuck_contact() -> Show {
 fn id_reuse() -> Show {
     let mut show = Show::new(
         "one id for three fingers",
-        "Three short ranges far apart, and none between them: an id that lands again is another finger.",
+        "Three short ranges, one before each finger: an id that lands again is another finger.",
     );
     let mut from_ms = 160.0;
     for (at, by) in [
-        ((300.0, 300.0), RIGHT * 80.0),
-        ((900.0, 250.0), LEFT * 80.0),
-        ((600.0, 500.0), UP * 80.0),
+        ((250.0, 470.0), UP * 80.0),
+        ((950.0, 470.0), UP * 80.0),
+        ((600.0, 470.0), UP * 80.0),
     ] {
         let push = straight(from_ms, 720.0, at, by);
         let (poses, pushed) = push.poses(&[DVec2::ZERO]);
@@ -163,7 +162,7 @@ fn cancel() -> Show {
         show.finger(finger);
     }
     let half_way = pose_at(&poses, gone_ms - f64::from(FRAME_MS)).at;
-    show.changes(half_way + LEFT * 75.0, gone_ms);
+    show.changes(half_way + LEFT * 105.0, gone_ms);
     let mut never = Finger::new(vec![
         pose(400.0, 300.0, 180.0),
         pose(416.0, 300.0, 180.0),

@@ -49,7 +49,7 @@ fn drumming() -> Show {
 fn rubbing() -> Show {
     let mut show = Show::new(
         "rubbing to and fro",
-        "Two low ranges, one before each turning point: each way is a push of its own.",
+        "Land rises before both turning points, most before the last: each way is a push of its own.",
     );
     let corners: Vec<(f64, f64)> = (0..8).map(|i| (560.0 + 90.0 * f64::from(i % 2), 330.0)).collect();
     show.finger(Finger::new(through(160.0, 360.0, &corners)));
@@ -87,7 +87,7 @@ fn slapping() -> Show {
 fn writing_a_name() -> Show {
     let mut show = Show::new(
         "writing a name",
-        "Ridges gather along the strokes of the name MIA.",
+        "Land rises before the ends of the strokes of the name MIA.",
     );
     let strokes: [&[(f64, f64)]; 4] = [
         &[
@@ -106,7 +106,10 @@ fn writing_a_name() -> Show {
         let poses = through(t_ms, 320.0, stroke);
         if let [.., before, last] = poses.as_slice() {
             let along = (last.at - before.at).normalize();
-            show.changes(last.at + along * 50.0, last.t_ms);
+            // The bar of the A lies on ground that has just moved: it joins what the letter raised.
+            if stroke.len() > 2 || along == DOWN {
+                show.changes(last.at + along * AHEAD_MM, last.t_ms);
+            }
             t_ms = last.t_ms + 300.0;
         }
         show.finger(Finger::new(poses));
@@ -117,12 +120,11 @@ fn writing_a_name() -> Show {
 fn pulling_towards_oneself() -> Show {
     let mut show = Show::new(
         "pulling the land towards oneself",
-        "A range rises on the near side of the hand, and the land sinks where the hand comes from.",
+        "A range rises on the near side of the hand.",
     );
     let push = straight(160.0, 1200.0, (600.0, 290.0), DOWN * 130.0);
     let pulled = show.push(&five(UP, 140.0), push);
     rises(&mut show, &pulled);
-    show.changes(pulled.behind(AHEAD_MM), pulled.end_ms);
     show
 }
 
@@ -134,7 +136,8 @@ fn two_equal_pushes() -> Show {
     for (x, toward) in [(375.0, RIGHT), (835.0, LEFT)] {
         let push = straight(160.0, 1600.0, (x, 350.0), toward * 75.0);
         let pushed = show.push(&five(toward, 150.0), push);
-        rises(&mut show, &pushed);
+        // Half-way, a little to either side.
+        show.changes(DVec2::new(605.0, 345.0) - toward * 20.0, pushed.end_ms);
     }
     show
 }
