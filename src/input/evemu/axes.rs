@@ -11,6 +11,9 @@ use crate::gesture::contact::MAX_CONTACTS;
 use crate::gesture::file::MAX_SIZE_MM;
 use crate::gesture::json::Expected;
 
+/// Least and greatest value of an axis, in device units.
+type Range = (f64, f64);
+
 /// Range and resolution of an axis, as far as they are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Axis {
@@ -22,7 +25,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// The range, if it is one.
-    fn range(&self) -> Option<(f64, f64)> {
+    fn range(&self) -> Option<Range> {
         let (min, max) = self.min.zip(self.max)?;
         (min < max).then_some((min.into(), max.into()))
     }
@@ -118,7 +121,7 @@ impl Axes {
     }
 }
 
-fn given_range(range: [f64; 4]) -> Result<((f64, f64), (f64, f64)), EvemuFault> {
+fn given_range(range: [f64; 4]) -> Result<(Range, Range), EvemuFault> {
     let [x0, x1, y0, y1] = range;
     // Differences of what fits in 32 bits stay exact.
     let reach = f64::from(i32::MAX) + 1.0;

@@ -74,7 +74,7 @@ impl Slot {
 /// All slots of a device.
 #[derive(Debug, Default)]
 pub(super) struct Slots {
-    slots: BTreeMap<u16, Slot>,
+    by_number: BTreeMap<u16, Slot>,
     /// The slot that events speak of.
     selected: u16,
     /// The slots of which the frame speaks.
@@ -109,7 +109,7 @@ impl Slots {
         }
         self.touched.insert(self.selected);
         if code != ABS_MT_TRACKING_ID {
-            let slot = self.slots.entry(self.selected).or_default();
+            let slot = self.by_number.entry(self.selected).or_default();
             slot.readings.insert(code, value);
         }
         true
@@ -117,7 +117,7 @@ impl Slots {
 
     /// The tracking id of the selected slot changes.
     fn track(&mut self, id: i32) {
-        let slot = self.slots.entry(self.selected).or_default();
+        let slot = self.by_number.entry(self.selected).or_default();
         let now = if id < 0 {
             Tracking::Free
         } else {
@@ -137,7 +137,7 @@ impl Slots {
     pub(super) fn report(&mut self) -> Vec<RawEvent> {
         let mut events = Vec::new();
         for number in std::mem::take(&mut self.touched) {
-            let slot = self.slots.entry(number).or_default();
+            let slot = self.by_number.entry(number).or_default();
             let mut say = |phase, downs: u32, touch| {
                 events.push(RawEvent {
                     phase,
@@ -175,7 +175,7 @@ impl Slots {
     pub(super) fn drop_all(&mut self) -> Vec<RawEvent> {
         self.touched.clear();
         let mut events = Vec::new();
-        for (&number, slot) in &mut self.slots {
+        for (&number, slot) in &mut self.by_number {
             if let Some(touch) = slot.shown {
                 events.push(RawEvent {
                     phase: Phase::Cancel,
