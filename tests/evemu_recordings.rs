@@ -216,6 +216,36 @@ fn sizes_follow_the_axes_and_palms_are_no_fingers() {
 }
 
 #[test]
+fn sizes_in_an_unknown_unit_are_left_out() {
+    let sizes = |axis: &str| -> Vec<Option<[f64; 2]>> {
+        let text = HEAD.to_owned()
+            + axis
+            + &at(0, "id 1,x 0,y 0,major 200,sync")
+            + &at(5, "major 100,sync")
+            + &at(9, "x 10,sync");
+        let frames = import(&text).unwrap().frames;
+        let contacts = frames.iter().flat_map(|frame| &frame.events);
+        let contacts = contacts.filter(|event| event.phase != Phase::Cancel);
+        contacts
+            .map(|e| e.contact.size_mm.map(|s| s.to_array()))
+            .collect()
+    };
+    let [told, untold] = [[20.0, 10.0, 10.0].map(|mm| Some([mm, mm])), [None; 3]];
+    assert_eq!(sizes(""), told, "as the kernel's documentation has it");
+    assert_eq!(sizes("A: 30 0 4000 0 0 0\n"), told, "the longer side");
+    assert_eq!(sizes("A: 30 0 5000 0 0 0\n"), told, "the diagonal");
+    // A strength, and a change of it that is none of the contact.
+    assert_eq!(sizes("A: 30 0 255 0 0 0\n"), untold[..2]);
+    assert_eq!(sizes("A: 30 0 65535 0 0 0\n"), untold[..2]);
+    let own = [40.0, 20.0, 20.0].map(|mm| Some([mm, mm]));
+    assert_eq!(sizes("A: 30 0 255 0 0 5\n"), own, "its own units per mm");
+    // Without a usable area of touch, the approaching finger's.
+    let text = HEAD.to_owned() + "A: 30 0 255 0 0 0\n" + &at(0, "id 1,x 0,y 0,major 200,width 150,sync");
+    let contact = import(&text).unwrap().frames[0].events[0].contact;
+    assert_eq!(contact.size_mm.map(|s| s.to_array()), Some([15.0, 15.0]));
+}
+
+#[test]
 fn range_and_size_come_from_the_recording_before_the_options() {
     let touch = at(0, "id 1,x 320,y 120,sync");
     let described = "# Event type 3 (EV_ABS)\n# Event code 53 (ABS_MT_POSITION_X)\n# Min 20\n# Max 620\n\

@@ -13,8 +13,10 @@ use crate::gesture::contact::Phase;
 pub(super) struct Touch {
     pub(super) x: i32,
     pub(super) y: i32,
-    /// Major and minor axis of the touching area, in the units of the position.
-    pub(super) ellipse: Option<(i32, i32)>,
+    /// Major and minor axis of the touching area.
+    pub(super) area: Option<(i32, i32)>,
+    /// Major and minor axis of what approaches: the finger around that area.
+    pub(super) approach: Option<(i32, i32)>,
     pub(super) orientation: i32,
     pub(super) palm: bool,
 }
@@ -63,8 +65,8 @@ impl Slot {
         Some(Touch {
             x: get(ABS_MT_POSITION_X)?,
             y: get(ABS_MT_POSITION_Y)?,
-            ellipse: pair(ABS_MT_TOUCH_MAJOR, ABS_MT_TOUCH_MINOR)
-                .or_else(|| pair(ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR)),
+            area: pair(ABS_MT_TOUCH_MAJOR, ABS_MT_TOUCH_MINOR),
+            approach: pair(ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR),
             orientation: get(ABS_MT_ORIENTATION).unwrap_or(0),
             palm: get(ABS_MT_TOOL_TYPE) == Some(MT_TOOL_PALM),
         })
