@@ -5,11 +5,17 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use serde_json::Value;
 
-use super::line::{ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_SLOT, EV_ABS};
+use super::line::{
+    ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_SLOT, ABS_MT_TOUCH_MAJOR,
+    ABS_MT_WIDTH_MAJOR, EV_ABS,
+};
 use super::{EvemuFault, EvemuOptions};
 use crate::gesture::contact::MAX_CONTACTS;
 use crate::gesture::file::MAX_SIZE_MM;
 use crate::gesture::json::Expected;
+
+/// Least and greatest value of an axis, in device units.
+type Range = (f64, f64);
 
 /// Range and resolution of an axis, as far as they are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +28,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// The range, if it is one.
-    fn range(&self) -> Option<(f64, f64)> {
+    fn range(&self) -> Option<Range> {
         let (min, max) = self.min.zip(self.max)?;
         (min < max).then_some((min.into(), max.into()))
     }
@@ -110,15 +116,30 @@ impl Axes {
             size_mm,
             origin: DVec2::new(x0, y0),
             units,
-            mm_per_unit: size_mm / units,
+            touch_mm_per_unit: self.area_scale(ABS_MT_TOUCH_MAJOR, units, size_mm),
+            approach_mm_per_unit: self.area_scale(ABS_MT_WIDTH_MAJOR, units, size_mm),
             lying: self
                 .ask(ABS_MT_ORIENTATION, |axis| axis.max)
                 .filter(|max| *max > 0),
         })
     }
+
+    /// Millimetres per unit, along x and y, of the areas whose major axis is `code`; `None` if they cannot be told.
+    ///
+    /// The kernel's documentation asks for the units of the position, at most the diagonal of the surface, but many
+    /// drivers report a strength of, say, 0 to 255: as a length it would make palms of fingers, or fingers of palms.
+    fn area_scale(&self, code: u16, units: DVec2, size_mm: DVec2) -> Option<DVec2> {
+        if let Some(resolution) = self.ask(code, |axis| axis.resolution.filter(|r| *r > 0)) {
+            return Some(DVec2::splat(1.0 / f64::from(resolution)));
+        }
+        let lengths = units.min_element()..=units.length().ceil();
+        self.ask(code, Axis::range)
+            .is_none_or(|(min, max)| lengths.contains(&(max - min)))
+            .then_some(size_mm / units)
+    }
 }
 
-fn given_range(range: [f64; 4]) -> Result<((f64, f64), (f64, f64)), EvemuFault> {
+fn given_range(range: [f64; 4]) -> Result<(Range, Range), EvemuFault> {
     let [x0, x1, y0, y1] = range;
     // Differences of what fits in 32 bits stay exact.
     let reach = f64::from(i32::MAX) + 1.0;
@@ -147,7 +168,9 @@ pub(super) struct Plane {
     pub(super) size_mm: DVec2,
     origin: DVec2,
     units: DVec2,
-    pub(super) mm_per_unit: DVec2,
+    /// Millimetres per unit of the touching area, and of the area that approaches; `None` where its unit is unknown.
+    pub(super) touch_mm_per_unit: Option<DVec2>,
+    pub(super) approach_mm_per_unit: Option<DVec2>,
     /// The orientation at which a major axis lies along x.
     lying: Option<i32>,
 }

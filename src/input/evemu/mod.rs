@@ -13,12 +13,14 @@ mod axes;
 mod line;
 mod slots;
 
+use std::collections::BTreeMap;
 use std::io::{self, BufRead, BufReader, Read};
 
 use glam::DVec2;
 
 use crate::gesture::contact::{
-    Contact, ContactEvent, ContactKey, InputFrame, MAX_CONTACTS, MAX_COORDINATE_MM, Source, quantise_mm,
+    Contact, ContactEvent, ContactKey, InputFrame, MAX_CONTACTS, MAX_COORDINATE_MM, Phase, Source,
+    quantise_mm,
 };
 use crate::gesture::file::MAX_TIME_MS;
 use crate::gesture::json::Expected;
@@ -310,14 +312,20 @@ impl Recording {
         self.push(self.span_us.map_or(0, |span| span.1), last_line, still_down);
         let start_us = self.frames.first().map_or(0, |frame| frame.t_us);
         let mut frames = Vec::with_capacity(self.frames.len());
+        let mut shown = BTreeMap::new();
         for raw in std::mem::take(&mut self.frames) {
             *number = raw.line;
             let mut events = Vec::with_capacity(raw.events.len());
             for event in &raw.events {
-                events.push(ContactEvent {
-                    phase: event.phase,
-                    contact: contact(&plane, event)?,
-                });
+                let phase = event.phase;
+                let contact = contact(&plane, event)?;
+                // Readings of no known unit change without changing the contact.
+                if shown.insert(event.slot, contact) != Some(contact) || phase != Phase::Move {
+                    events.push(ContactEvent { phase, contact });
+                }
+            }
+            if events.is_empty() {
+                continue;
             }
             events.sort_by_key(|event| (event.phase.order(), event.contact.key));
             frames.push(InputFrame {
@@ -372,7 +380,8 @@ fn contact(plane: &Plane, event: &slots::RawEvent) -> Result<Contact, EvemuFault
     let Touch {
         x,
         y,
-        ellipse,
+        area,
+        approach,
         orientation,
         palm,
     } = event.touch;
@@ -382,14 +391,16 @@ fn contact(plane: &Plane, event: &slots::RawEvent) -> Result<Contact, EvemuFault
         return Err(EvemuFault::Far { found_mm: far });
     }
     let length = |mm: f64| quantise_mm(mm.clamp(0.0, MAX_COORDINATE_MM));
-    let size_mm = ellipse.map(|(major, minor)| {
+    let area = area.zip(plane.touch_mm_per_unit);
+    let area = area.or_else(|| approach.zip(plane.approach_mm_per_unit));
+    let size_mm = area.map(|((major, minor), mm_per_unit)| {
         // The major axis stands upright at 0 and lies at the greatest orientation (or its negative).
         let (width, height) = if plane.lies(orientation) {
             (major, minor)
         } else {
             (minor, major)
         };
-        let size = DVec2::new(width.into(), height.into()) * plane.mm_per_unit;
+        let size = DVec2::new(width.into(), height.into()) * mm_per_unit;
         DVec2::new(length(size.x), length(size.y))
     });
     Ok(Contact {

@@ -13,8 +13,10 @@ use crate::gesture::contact::Phase;
 pub(super) struct Touch {
     pub(super) x: i32,
     pub(super) y: i32,
-    /// Major and minor axis of the touching area, in the units of the position.
-    pub(super) ellipse: Option<(i32, i32)>,
+    /// Major and minor axis of the touching area.
+    pub(super) area: Option<(i32, i32)>,
+    /// Major and minor axis of what approaches: the finger around that area.
+    pub(super) approach: Option<(i32, i32)>,
     pub(super) orientation: i32,
     pub(super) palm: bool,
 }
@@ -63,8 +65,8 @@ impl Slot {
         Some(Touch {
             x: get(ABS_MT_POSITION_X)?,
             y: get(ABS_MT_POSITION_Y)?,
-            ellipse: pair(ABS_MT_TOUCH_MAJOR, ABS_MT_TOUCH_MINOR)
-                .or_else(|| pair(ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR)),
+            area: pair(ABS_MT_TOUCH_MAJOR, ABS_MT_TOUCH_MINOR),
+            approach: pair(ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR),
             orientation: get(ABS_MT_ORIENTATION).unwrap_or(0),
             palm: get(ABS_MT_TOOL_TYPE) == Some(MT_TOOL_PALM),
         })
@@ -74,7 +76,7 @@ impl Slot {
 /// All slots of a device.
 #[derive(Debug, Default)]
 pub(super) struct Slots {
-    slots: BTreeMap<u16, Slot>,
+    by_number: BTreeMap<u16, Slot>,
     /// The slot that events speak of.
     selected: u16,
     /// The slots of which the frame speaks.
@@ -109,7 +111,7 @@ impl Slots {
         }
         self.touched.insert(self.selected);
         if code != ABS_MT_TRACKING_ID {
-            let slot = self.slots.entry(self.selected).or_default();
+            let slot = self.by_number.entry(self.selected).or_default();
             slot.readings.insert(code, value);
         }
         true
@@ -117,7 +119,7 @@ impl Slots {
 
     /// The tracking id of the selected slot changes.
     fn track(&mut self, id: i32) {
-        let slot = self.slots.entry(self.selected).or_default();
+        let slot = self.by_number.entry(self.selected).or_default();
         let now = if id < 0 {
             Tracking::Free
         } else {
@@ -137,7 +139,7 @@ impl Slots {
     pub(super) fn report(&mut self) -> Vec<RawEvent> {
         let mut events = Vec::new();
         for number in std::mem::take(&mut self.touched) {
-            let slot = self.slots.entry(number).or_default();
+            let slot = self.by_number.entry(number).or_default();
             let mut say = |phase, downs: u32, touch| {
                 events.push(RawEvent {
                     phase,
@@ -175,7 +177,7 @@ impl Slots {
     pub(super) fn drop_all(&mut self) -> Vec<RawEvent> {
         self.touched.clear();
         let mut events = Vec::new();
-        for (&number, slot) in &mut self.slots {
+        for (&number, slot) in &mut self.by_number {
             if let Some(touch) = slot.shown {
                 events.push(RawEvent {
                     phase: Phase::Cancel,

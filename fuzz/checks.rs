@@ -1,0 +1,107 @@
+//! What must hold for any bytes: run by the fuzz targets, and by `tests/fuzz_regressions.rs` on what they once found.
+
+use std::collections::BTreeMap;
+
+use orogen::gesture::command::Command;
+use orogen::gesture::contact::{ContactEvent, InputFrame, Source};
+use orogen::gesture::file::{GestureFile, Header, read_gesture};
+use orogen::gesture::hand::HandTracker;
+use orogen::gesture::params::GestureParams;
+use orogen::input::evemu::{EvemuOptions, import_evemu};
+
+/// Ticks of 16 ms that follow a frame, at most: enough for every timer of the hands to run out.
+const TICKS_AFTER_FRAME: u64 = 40;
+const TICK_US: u64 = 16_000;
+
+/// A gesture file that is read can be written, reads back equal, is canonical from then on, and plays.
+pub(crate) fn gesture_reader(bytes: &[u8]) {
+    match read_gesture(bytes, "fuzz") {
+        Ok(file) => {
+            round_trip(&file);
+            play(&file.frames, &file.header);
+        }
+        Err(error) => one_line(&error.to_string()),
+    }
+}
+
+/// A recording that is imported is a gesture file, and plays.
+pub(crate) fn evemu_import(bytes: &[u8]) {
+    let given = EvemuOptions {
+        range: Some([0.0, 4095.0, 0.0, 4095.0]),
+        size_mm: Some([600.0, 340.0].into()),
+    };
+    for options in [EvemuOptions::default(), given] {
+        match import_evemu(bytes, "fuzz", &options) {
+            Ok(imported) => {
+                let mut header = Header::new(imported.size_mm);
+                header.title = Some(imported.title);
+                let file = GestureFile {
+                    header,
+                    frames: imported.frames,
+                    warnings: Vec::new(),
+                };
+                round_trip(&file);
+                play(&file.frames, &file.header);
+            }
+            Err(error) => one_line(&error.to_string()),
+        }
+    }
+}
+
+fn one_line(error: &str) {
+    assert!(error.contains("expected"), "what was expected: {error}");
+    assert!(!error.contains('\n'), "one line: {error}");
+}
+
+fn round_trip(file: &GestureFile) {
+    let written = file.write(Vec::new()).expect("memory takes all");
+    let again = read_gesture(&written[..], "again").expect("what was written can be read");
+    assert_eq!(again.header, file.header);
+    assert_eq!(moments(&again.frames), moments(&file.frames));
+    assert_eq!(again.warnings, Vec::<String>::new());
+    let rewritten = again.write(Vec::new()).expect("memory takes all");
+    assert_eq!(
+        String::from_utf8_lossy(&rewritten),
+        String::from_utf8_lossy(&written)
+    );
+}
+
+/// All that happens at each time: per contact in its order, and the commands. (A moment in which an id lifts and
+/// lands again takes two lines when it is written.)
+type Moment = (BTreeMap<(Source, u16, u64), Vec<ContactEvent>>, Vec<Command>);
+
+fn moments(frames: &[InputFrame]) -> BTreeMap<u64, Moment> {
+    let mut moments: BTreeMap<u64, Moment> = BTreeMap::new();
+    for frame in frames {
+        let (contacts, commands) = moments.entry(frame.t_us).or_default();
+        for event in &frame.events {
+            let slot = event.contact.key.slot();
+            contacts.entry(slot).or_default().push(*event);
+        }
+        commands.extend(frame.commands.iter().cloned());
+    }
+    moments
+}
+
+fn play(frames: &[InputFrame], header: &Header) {
+    let mut hands = HandTracker::new(GestureParams::default(), header.size_mm);
+    let step = |hands: &mut HandTracker, t_us| {
+        hands.tick(t_us);
+        hands.sanity_check().expect("whole hands");
+    };
+    for (i, frame) in frames.iter().enumerate() {
+        hands.feed(frame);
+        step(&mut hands, frame.t_us);
+        let next_us = frames.get(i + 1).map_or(u64::MAX, |next| next.t_us);
+        for tick in 1..=TICKS_AFTER_FRAME {
+            let t_us = frame.t_us + tick * TICK_US;
+            if t_us >= next_us {
+                break;
+            }
+            step(&mut hands, t_us);
+        }
+    }
+    hands.finish(frames.last().map_or(0, |frame| frame.t_us));
+    hands.sanity_check().expect("whole hands");
+    assert_eq!(hands.hands().count(), 0, "hands that stay after the end");
+}

@@ -1,0 +1,178 @@
+//! Recordings of real touchscreens, where they lie beside the checkout; the project ships none of them.
+//!
+//! They are looked for in the folder that `OROGEN_SHARED` names, else in `../shared`. Where they are missing each
+//! test says so and passes, unless `OROGEN_REQUIRE_SHARED=1`.
+
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use orogen::gesture::contact::{InputFrame, Phase};
+use orogen::gesture::file::{GestureFile, Header, read_gesture};
+use orogen::gesture::hand::HandTracker;
+use orogen::gesture::params::GestureParams;
+use orogen::input::evemu::{EvemuError, EvemuOptions, Imported, import_evemu};
+
+/// The recording of this name, or `None` after saying that it is skipped.
+fn recording(name: &str) -> Option<PathBuf> {
+    let shared = std::env::var_os("OROGEN_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+        PathBuf::from,
+    );
+    let path = shared.join("touch/recordings").join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    let required = std::env::var_os("OROGEN_REQUIRE_SHARED").is_some_and(|v| v == "1");
+    assert!(
+        !required,
+        "OROGEN_REQUIRE_SHARED=1, but {} is missing",
+        path.display()
+    );
+    // Past the test harness, which keeps what passing tests print to itself.
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {} is missing", path.display());
+    None
+}
+
+fn import(path: &Path, options: &EvemuOptions) -> Result<Imported, EvemuError> {
+    import_evemu(
+        File::open(path).expect("a readable recording"),
+        "recording",
+        options,
+    )
+}
+
+/// Most contacts that are down at once.
+fn most_down(frames: &[InputFrame]) -> usize {
+    let (mut down, mut most) = (0, 0);
+    for event in frames.iter().flat_map(|frame| &frame.events) {
+        match event.phase {
+            Phase::Down => down += 1,
+            Phase::Up | Phase::Cancel => down -= 1,
+            Phase::Move => {}
+        }
+        most = most.max(down);
+    }
+    assert_eq!(down, 0, "what is down at the end is cancelled");
+    most
+}
+
+/// Writes the recording as a gesture file and reads it back; plays it on a table of its size.
+fn round_trip_and_play(imported: Imported) -> HandTracker {
+    let file = GestureFile {
+        header: Header::new(imported.size_mm),
+        frames: imported.frames,
+        warnings: Vec::new(),
+    };
+    let bytes = file.write(Vec::new()).expect("memory takes all");
+    assert_eq!(
+        read_gesture(&bytes[..], "written").expect("what was written"),
+        file
+    );
+
+    let mut hands = HandTracker::new(GestureParams::default(), imported.size_mm);
+    let mut frames = file.frames.iter().peekable();
+    let end_us = file.frames.last().expect("contacts").t_us + 1_000_000;
+    for t_us in (0..=end_us).step_by(16_000) {
+        while let Some(frame) = frames.next_if(|frame| frame.t_us <= t_us) {
+            hands.feed(frame);
+        }
+        hands.tick(t_us);
+        hands.sanity_check().expect("whole hands");
+    }
+    hands.finish(end_us);
+    hands.sanity_check().expect("whole hands");
+    assert_eq!(hands.hands().count(), 0);
+    hands
+}
+
+#[test]
+fn ten_fingers_on_a_large_tablet() {
+    let Some(path) = recording("tablets_Wacom_DTH2242_Finger.events") else {
+        return;
+    };
+    let imported = import(&path, &EvemuOptions::default()).unwrap();
+    assert_eq!(imported.title, "Wacom DTH2242 Finger");
+    assert_eq!(imported.size_mm, DVec2::new(464.8, 255.6));
+    assert_eq!(imported.warnings, Vec::<String>::new());
+    assert_eq!(most_down(&imported.frames), 10);
+    let seconds = imported.frames.last().unwrap().t_us as f64 / 1e6;
+    assert!((24.0..24.5).contains(&seconds), "{seconds}");
+    let first = imported.frames[0].events[0].contact;
+    assert_eq!(first.position, DVec2::new(141.5, 132.6));
+    assert_eq!(first.size_mm, Some(DVec2::new(12.0, 12.0)));
+    let downs = imported.frames.iter().flat_map(|frame| &frame.events);
+    let downs = downs.filter(|event| event.phase == Phase::Down).count();
+    // 132 events of the tracking id: each contact lands and lifts once.
+    assert_eq!(downs, 66);
+    let stats = round_trip_and_play(imported).stats();
+    assert_eq!((stats.total, stats.ignored, stats.doubled), (66, 0, 0));
+    assert!(stats.hands > 0 && stats.pushes > 0, "{stats:?}");
+}
+
+#[test]
+fn four_fingers_drag_on_a_small_screen() {
+    let Some(path) = recording("touchscreens_EP0430M09.4-finger-drag-down.events") else {
+        return;
+    };
+    let error = import(&path, &EvemuOptions::default()).unwrap_err().to_string();
+    assert!(
+        error.starts_with("recording:") && error.contains("--size-mm W,H"),
+        "{error}"
+    );
+    let options = EvemuOptions {
+        range: Some([0.0, 1279.0, 0.0, 767.0]),
+        size_mm: Some(DVec2::new(95.0, 54.0)),
+    };
+    let imported = import(&path, &options).unwrap();
+    assert_eq!((&imported.title[..], imported.warnings.len()), ("EP0430M09", 0));
+    assert_eq!(most_down(&imported.frames), 4);
+    let stats = round_trip_and_play(imported).stats();
+    assert_eq!((stats.total, stats.hands, stats.pushes), (4, 1, 1), "{stats:?}");
+}
+
+#[test]
+fn a_recording_without_a_head_needs_range_and_size() {
+    let Some(path) = recording("tablets_Wacom_ISDv4_E6_Finger.double-center-circle.events") else {
+        return;
+    };
+    let mut options = EvemuOptions {
+        range: None,
+        size_mm: Some(DVec2::new(278.0, 156.0)),
+    };
+    let error = import(&path, &options).unwrap_err().to_string();
+    assert!(error.contains("--range X0,X1,Y0,Y1"), "{error}");
+    options.range = Some([0.0, 2776.0, 0.0, 1569.0]);
+    let imported = import(&path, &options).unwrap();
+    assert_eq!(most_down(&imported.frames), 2);
+    round_trip_and_play(imported);
+}
+
+#[test]
+fn other_protocols_are_refused_by_name() {
+    let given = EvemuOptions {
+        range: Some([0.0, 9600.0, 0.0, 7200.0]),
+        size_mm: Some(DVec2::new(300.0, 200.0)),
+    };
+    for (name, words) in [
+        (
+            "tablets_eGalax_Inc._USB_TouchController.events",
+            "expected multi-touch events (ABS_MT_POSITION_X, ABS_MT_POSITION_Y), found only single-touch axes",
+        ),
+        (
+            "touchscreens_N-Trig_MultiTouch.1-finger-drag-NW-SE.events",
+            "expected multi-touch protocol B (ABS_MT_SLOT, ABS_MT_TRACKING_ID), found SYN_MT_REPORT of protocol A",
+        ),
+        (
+            "touchscreens_N-Trig_MultiTouch.2-fingers-touch-release.events",
+            "found SYN_MT_REPORT of protocol A",
+        ),
+    ] {
+        let Some(path) = recording(name) else { continue };
+        for options in [EvemuOptions::default(), given] {
+            let error = import(&path, &options).unwrap_err().to_string();
+            assert!(error.contains(words), "{name}: {error}");
+        }
+    }
+}

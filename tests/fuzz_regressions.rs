@@ -1,0 +1,58 @@
+//! Replays the seeds of the fuzz targets and everything they once found.
+
+#[path = "../fuzz/checks.rs"]
+mod checks;
+
+use std::fs;
+use std::path::Path;
+
+/// Runs `check` on the files of both folders of `target`, and says how many there were.
+fn replay(target: &str, check: fn(&[u8])) -> usize {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = 0;
+    for folder in ["fuzz/seeds", "tests/regressions"] {
+        let Ok(entries) = fs::read_dir(root.join(folder).join(target)) else {
+            continue;
+        };
+        for entry in entries {
+            let path = entry.expect("a readable folder").path();
+            println!("{}", path.display());
+            check(&fs::read(&path).expect("a readable file"));
+            files += 1;
+        }
+    }
+    files
+}
+
+#[test]
+fn gesture_reader() {
+    assert!(replay("gesture_reader", checks::gesture_reader) >= 2);
+}
+
+#[test]
+fn evemu_import() {
+    assert!(replay("evemu_import", checks::evemu_import) >= 2);
+}
+
+/// Seeds that are refused at the first line would teach the fuzzer nothing.
+#[test]
+fn seeds_are_read() {
+    use orogen::gesture::file::read_gesture;
+    use orogen::input::evemu::{EvemuOptions, import_evemu};
+
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
+    for name in ["grammar", "split"] {
+        let path = seeds.join(format!("gesture_reader/{name}.gesture.jsonl"));
+        let file = read_gesture(fs::File::open(path).unwrap(), name).unwrap();
+        assert!(file.frames.len() >= 6, "{name}");
+    }
+    let options = EvemuOptions {
+        range: None,
+        size_mm: Some([100.0, 60.0].into()),
+    };
+    for name in ["two_fingers", "mid_touch"] {
+        let path = seeds.join(format!("evemu_import/{name}.events"));
+        let imported = import_evemu(fs::File::open(path).unwrap(), name, &options).unwrap();
+        assert!(imported.frames.len() >= 3, "{name}");
+    }
+}
