@@ -374,3 +374,41 @@ fn what_is_no_protocol_b_recording_is_refused_by_line() {
     }
     assert!(import("").unwrap_err().starts_with("rec:1: expected"));
 }
+
+#[test]
+fn what_repeats_changes_nothing() {
+    let (frames, warnings) = played(&[
+        at(0, "id 7,x 1000,y 500,sync"),
+        at(10, "id 7,x 1000,y 500,sync"),
+        at(20, "id 7,x 1001,y 500,sync"),
+        at(30, "id -1,sync"),
+        // Nobody is there.
+        at(40, "x 5,id -1,sync"),
+    ]);
+    assert_eq!(
+        frames,
+        ["0: down 0.0 (100,50)", "20: move 0.0 (100.1,50)", "30: up 0.0"]
+    );
+    assert_eq!(warnings, Vec::<String>::new());
+}
+
+#[test]
+fn what_lands_and_lifts_within_a_frame_is_left_out() {
+    let (frames, warnings) = played(&[
+        at(0, "id 7,x 1000,y 500,sync"),
+        at(10, "id 8,id 9,x 1100,sync"),
+        at(20, "id -1,id 10,x 1300,id -1,sync"),
+    ]);
+    assert_eq!(
+        frames,
+        [
+            "0: down 0.0 (100,50)",
+            "10: up 0.0, down 0.1 (110,50)",
+            "20: up 0.1"
+        ]
+    );
+    assert_eq!(
+        warnings,
+        ["2 contact(s) left out: no frame has them down with both coordinates"]
+    );
+}
