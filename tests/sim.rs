@@ -110,9 +110,12 @@ fn undo_restores_land_and_time_of_the_last_push_of_that_side() {
         3000,
     );
     assert!(sim.undo(Some(Side::North)));
-    assert!(sim.world().time_yr >= between.time_yr && sim.world().plates.len() == between.plates.len());
+    assert!(
+        sim.world().time_yr >= between.time_yr
+            && sim.world().plates.plates().len() == between.plates.plates().len()
+    );
     assert!(sim.undo(Some(Side::South)));
-    assert_eq!(sim.world().plates.len(), 0);
+    assert_eq!(sim.world().plates.plates().len(), 0);
     assert!(sim.world().time_yr - before.time_yr < 100_000.0);
     assert!(!sim.undo(Some(Side::South)), "nothing is left to undo");
     let undone = InputFrame {
@@ -145,7 +148,7 @@ fn a_contact_that_turns_out_to_be_a_sleeve_leaves_no_trace() {
     play(&mut touched, frames, 2000);
     play(&mut untouched, Vec::new(), 2000);
     assert_eq!(touched.counts().rolled_back, 1);
-    assert_eq!(touched.world().plates.len(), 0);
+    assert_eq!(touched.world().plates.plates().len(), 0);
     assert_eq!(difference(&touched, &untouched), 0.0, "to the bit");
     assert_eq!(touched.ticks(), untouched.ticks());
 }

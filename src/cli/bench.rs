@@ -47,15 +47,16 @@ struct Row {
 }
 
 /// Runs all stages.
-pub(super) fn run(args: &BenchArgs, console: Console) -> Result<(), Failure> {
+pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
     let rows = on_threads(args.threads, || {
         let mut bench = Bench {
             rows: Vec::new(),
-            console,
             json: args.json,
         };
         if !args.json {
-            console.result("stage                       size  state       threads   wall ms    cpu ms  peak MiB  paper ms");
+            Console::result(
+                "stage                       size  state       threads   wall ms    cpu ms  peak MiB  paper ms",
+            );
         }
         let sizes: &[usize] = if args.million {
             &[10_000, 100_000, 1_000_000]
@@ -70,7 +71,7 @@ pub(super) fn run(args: &BenchArgs, console: Console) -> Result<(), Failure> {
         Ok(bench.rows)
     })?;
     if !args.json {
-        console.result(&verdict(&rows));
+        Console::result(&verdict(&rows));
     }
     Ok(())
 }
@@ -108,7 +109,6 @@ fn verdict(rows: &[Row]) -> String {
 
 struct Bench {
     rows: Vec<Row>,
-    console: Console,
     json: bool,
 }
 
@@ -149,18 +149,18 @@ impl Bench {
         };
         self.print(&row);
         self.rows.push(row);
-        last.unwrap_or_else(|| work())
+        last.unwrap_or_else(work)
     }
 
     fn print(&self, row: &Row) {
         if self.json {
             if let Ok(line) = serde_json::to_string(row) {
-                self.console.result(&line);
+                Console::result(&line);
             }
             return;
         }
         let optional = |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.1}"));
-        self.console.result(&format!(
+        Console::result(&format!(
             "{:<22} {:>9}  {:<10} {:>8} {:>9.2} {:>9.2} {:>9} {:>9}",
             row.stage,
             row.size,

@@ -17,7 +17,7 @@ impl Console {
     }
 
     /// A result, for people and pipes. A closed pipe is no fault of ours.
-    pub(super) fn result(self, line: &str) {
+    pub(super) fn result(line: &str) {
         let _ = writeln!(std::io::stdout(), "{line}");
     }
 
@@ -29,12 +29,12 @@ impl Console {
     }
 
     /// Something that did not stop the command but should be known.
-    pub(super) fn warn(self, line: &str) {
+    pub(super) fn warn(line: &str) {
         let _ = writeln!(std::io::stderr(), "warning: {line}");
     }
 
     /// Why the command stopped.
-    pub(super) fn error(self, line: &str) {
+    pub(super) fn error(line: &str) {
         let _ = writeln!(std::io::stderr(), "orogen: {line}");
     }
 

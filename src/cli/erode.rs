@@ -291,6 +291,6 @@ fn erode(
     } else {
         "picture.png"
     };
-    console.result(&out.path().join(shown).display().to_string());
+    Console::result(&out.path().join(shown).display().to_string());
     Ok(())
 }

@@ -81,7 +81,7 @@ struct ReplayArgs {
     #[command(flatten)]
     common: Common,
     /// Model years that the world runs on after the last push (default: the file's, else 5e6).
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     years: Option<f64>,
     /// Use the rules of the paper instead of Orogen's own defaults (no rest weight, tapers or rifts).
     #[arg(long)]
@@ -94,7 +94,7 @@ struct ReplayArgs {
 #[derive(Debug, Args)]
 struct ErodeArgs {
     /// Uplift: a map (EXR in m/yr, or PNG whose white is 1e-3 m/yr), or one number in m/yr for a square map.
-    #[arg(long, value_name = "MAP|U")]
+    #[arg(long, value_name = "MAP|U", allow_negative_numbers = true)]
     uplift: String,
     #[command(flatten)]
     common: Common,
@@ -196,13 +196,13 @@ pub fn main() -> ExitCode {
         None => replay::builtin(console),
         Some(Command::Replay(args)) => replay::run(&args, console),
         Some(Command::Erode(args)) => erode::run(&args, console),
-        Some(Command::Import(args)) => import::run(&args, console),
-        Some(Command::Bench(args)) => bench::run(&args, console),
+        Some(Command::Import(args)) => import::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            console.error(&failure.to_string());
+            Console::error(&failure.to_string());
             failure.code()
         }
     }
@@ -226,7 +226,7 @@ fn usage(error: &clap::Error) -> ExitCode {
         .collect();
     let line = lines.join(" ");
     let line = line.strip_prefix("error: ").unwrap_or(&line);
-    Console::new(true).error(&format!("{line} (see `orogen --help`)"));
+    Console::error(&format!("{line} (see `orogen --help`)"));
     ExitCode::from(2)
 }
 

@@ -83,7 +83,7 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
     on_threads(args.common.threads, || {
         for (stem, file) in &sessions {
             for warning in &file.warnings {
-                console.warn(warning);
+                Console::warn(warning);
             }
             play(stem, file, args, console)?;
         }
@@ -163,7 +163,7 @@ fn play(stem: &str, file: &GestureFile, args: &ReplayArgs, console: Console) -> 
     write_json(&out, "report.json", &report)?;
     write_json(&out, "timings.json", &timings.finish())?;
     if report.quarantine.steps > 0 {
-        console.warn(&format!(
+        Console::warn(&format!(
             "{} steps held numbers that are none and were thrown away",
             report.quarantine.steps
         ));
@@ -173,7 +173,7 @@ fn play(stem: &str, file: &GestureFile, args: &ReplayArgs, console: Console) -> 
     } else {
         "picture.png"
     };
-    console.result(&out.path().join(shown).display().to_string());
+    Console::result(&out.path().join(shown).display().to_string());
     Ok(())
 }
 

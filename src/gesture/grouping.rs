@@ -218,9 +218,9 @@ mod tests {
 
     #[test]
     fn visitors_who_face_each_other_are_two_even_within_a_box() {
-        assert_eq!(groups(&[(600.0, 264.0), (600.0, 416.0)], &[]).len(), 2);
+        assert_eq!(groups(&[(600.0, 244.0), (600.0, 436.0)], &[]).len(), 2);
         // Both sides of the line, but too near to it to tell.
-        assert_eq!(groups(&[(600.0, 275.0), (600.0, 410.0)], &[]).len(), 1);
+        assert_eq!(groups(&[(600.0, 250.0), (600.0, 430.0)], &[]).len(), 1);
         // A small screen has one visitor.
         let small = group(
             &GestureParams::default(),

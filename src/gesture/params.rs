@@ -54,7 +54,7 @@ impl Default for GestureParams {
             hand_box_mm: 200.0,
             join_ms: 150.0,
             late_reach_mm: 120.0,
-            facing_gap_mm: 150.0,
+            facing_gap_mm: 190.0,
             motion_mm: 4.0,
             rest_ms: 500.0,
             split_mm: 8.0,

@@ -46,7 +46,7 @@ impl RangeFacts {
         let front_drainage_fraction = divide.map_or(0.0, |axis| front_drainage(tin, &in_range, &exits, axis));
         Self {
             range_area_km2: range_area / (KM * KM),
-            divide_azimuth_deg: divide.map_or(0.0, |axis| axis.azimuth_deg()),
+            divide_azimuth_deg: divide.map_or(0.0, Axis::azimuth_deg),
             front_drainage_fraction,
             relief_10km_m: relief(tin, z, &in_range),
             mean_slope_deg,
@@ -172,9 +172,8 @@ fn front_drainage(tin: &Tin, in_range: &[bool], exits: &[Option<DVec2>], axis: A
     }
     let (middle, half) = ((low + high) / 2.0, ((high - low) / 2.0).max(DVec2::ONE));
     let (mut all, mut front) = (0.0, 0.0);
-    for i in 0..tin.len() {
-        let Some(exit) = exits[i] else { continue };
-        let area = tin.areas()[i];
+    for (exit, area) in exits.iter().zip(tin.areas()) {
+        let Some(exit) = *exit else { continue };
         all += area;
         let at = ((axis.local(exit) - middle) / half).abs();
         if at.y > at.x {

@@ -3,15 +3,21 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use super::rollback::Rollback;
 use super::{SimParams, TICK_US, World};
 use crate::gesture::contact::{ContactKey, InputFrame, Side};
 use crate::gesture::event::{HandEvent, Leg};
 use crate::gesture::hand::{ContactStats, HandTracker};
-use crate::mountain::tectonics::TectonicReport;
 use crate::mountain::plate::Pair;
+use crate::mountain::tectonics::TectonicReport;
 use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateState, TectonicField, Tectonics};
 use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets};
+use crate::units::KM;
+
+/// How far from its fingers a push must move the land, metres: as far as an eye that follows the finger sees.
+const ANSWER_REACH: f64 = 30.0 * KM;
 
 /// Numbers that were none, and what became of them. They never reach the land.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -350,27 +356,40 @@ impl Sim {
             .apply(event, &world.map, world.time_yr, &self.params.mountain);
         self.state.stale |= applied != Applied::Unchanged;
         match event {
-            HandEvent::Push { .. } => world.last_push_yr = world.time_yr,
             HandEvent::Tap { .. } if applied == Applied::Domes(0) => self.state.counts.dead_touches += 1,
-            HandEvent::Tap { .. } => world.last_push_yr = world.time_yr,
+            HandEvent::Push { .. } | HandEvent::Tap { .. } => world.last_push_yr = world.time_yr,
             HandEvent::PushEnd { leg } => self.judge(*leg),
             HandEvent::Rest { .. } | HandEvent::Lift { .. } | HandEvent::Retract { .. } => {}
         }
     }
 
-    /// A finished push that has changed the uplift nowhere is a dead touch.
+    /// A finished push is a dead touch if the uplift it found is the uplift it leaves, and the land before its
+    /// fingers neither rises nor sinks (the same push again only goes on raising what rises).
     fn judge(&mut self, leg: Leg) {
         self.update_uplift();
         let Some(found) = self.state.found.remove(&leg) else {
             return;
         };
-        let (now, then) = (&self.state.uplift.field.data, &found.field.data);
-        let change = now
+        let field = &self.state.uplift.field;
+        let most = |rates: &mut dyn Iterator<Item = f32>| f64::from(rates.fold(0.0, f32::max));
+        let change = most(
+            &mut field
+                .data
+                .iter()
+                .zip(&found.field.data)
+                .map(|(a, b)| (a - b).abs()),
+        );
+        let plates = self.state.world.plates.plates();
+        let tips: Vec<DVec2> = plates
             .iter()
-            .zip(then)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f32::max);
-        if f64::from(change) < self.params.answer_m_per_yr {
+            .filter(|plate| plate.leg == Some(leg))
+            .flat_map(|plate| plate.arrows().map(|(_, tip)| tip))
+            .collect();
+        let near = |p: DVec2| tips.iter().any(|tip| tip.distance(p) < ANSWER_REACH);
+        let grid = field.grid;
+        let before_fingers = (0..grid.len()).filter(|at| near(grid.centre(at % grid.cols, at / grid.cols)));
+        let moving = most(&mut before_fingers.map(|at| field.data[at].abs()));
+        if change.max(moving) < self.params.answer_m_per_yr {
             self.state.counts.dead_touches += 1;
         }
     }
