@@ -15,7 +15,11 @@ use crate::input::evemu::{EvemuOptions, import_evemu};
 pub(super) fn run(args: &ImportArgs, console: Console) -> Result<(), Failure> {
     let name = args.file.display().to_string();
     let options = EvemuOptions {
-        range: args.range.as_deref().map(|text| numbers("--range", "X0,X1,Y0,Y1", text)).transpose()?,
+        range: args
+            .range
+            .as_deref()
+            .map(|text| numbers("--range", "X0,X1,Y0,Y1", text))
+            .transpose()?,
         size_mm: args
             .size_mm
             .as_deref()
@@ -28,8 +32,15 @@ pub(super) fn run(args: &ImportArgs, console: Console) -> Result<(), Failure> {
     for warning in &imported.warnings {
         console.warn(warning);
     }
-    let header = Header { title: Some(imported.title), ..Header::new(imported.size_mm) };
-    let gestures = GestureFile { header, frames: imported.frames, warnings: Vec::new() };
+    let header = Header {
+        title: Some(imported.title),
+        ..Header::new(imported.size_mm)
+    };
+    let gestures = GestureFile {
+        header,
+        frames: imported.frames,
+        warnings: Vec::new(),
+    };
     let (folder, target) = split(&args.out)?;
     OutDir::create(folder)
         .and_then(|out| out.write(&target, |w| gestures.write(w).map(drop)))
@@ -43,7 +54,10 @@ fn split(path: &Path) -> Result<(&Path, String), Failure> {
     let name = path
         .file_name()
         .ok_or_else(|| Failure::input(format!("--out {}: expected a file name", path.display())))?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     Ok((folder, name.to_string_lossy().into_owned()))
 }
 
@@ -52,7 +66,13 @@ fn numbers<const N: usize>(option: &str, form: &str, text: &str) -> Result<[f64;
     let wrong = || Failure::input(format!("{option} {text}: expected {form}, {N} numbers"));
     let values = text
         .split(',')
-        .map(|part| part.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(wrong))
+        .map(|part| {
+            part.trim()
+                .parse::<f64>()
+                .ok()
+                .filter(|v| v.is_finite())
+                .ok_or_else(wrong)
+        })
         .collect::<Result<Vec<_>, _>>()?;
     values.try_into().map_err(|_| wrong())
 }
@@ -63,10 +83,16 @@ mod tests {
 
     #[test]
     fn numbers_are_counted_and_checked() {
-        assert_eq!(numbers::<2>("--size-mm", "W,H", "464.8, 255.6").expect("two"), [464.8, 255.6]);
+        assert_eq!(
+            numbers::<2>("--size-mm", "W,H", "464.8, 255.6").expect("two"),
+            [464.8, 255.6]
+        );
         for wrong in ["", "1", "1,2,3", "1,x", "1,inf"] {
             let failure = numbers::<2>("--size-mm", "W,H", wrong).expect_err(wrong);
-            assert!(failure.to_string().contains("expected W,H, 2 numbers"), "{failure}");
+            assert!(
+                failure.to_string().contains("expected W,H, 2 numbers"),
+                "{failure}"
+            );
         }
     }
 }

@@ -207,18 +207,18 @@ fn rows(tin: &Tin, columns: u32) -> usize {
 }
 
 fn map_png(surface: &Surface, style: &MapStyle) -> Result<Vec<u8>, Failure> {
-    let map = relief_map(surface, style, surface.height.width as u32, surface.height.height as u32);
+    let map = relief_map(
+        surface,
+        style,
+        surface.height.width as u32,
+        surface.height.height as u32,
+    );
     let mut png = Cursor::new(Vec::new());
     map.write_to(&mut png, ImageFormat::Png).map_err(Failure::other)?;
     Ok(png.into_inner())
 }
 
-fn write_height_maps(
-    out: &OutDir,
-    height: &Raster,
-    uplift: &[f32],
-    drainage: &[f32],
-) -> Result<(), Failure> {
+fn write_height_maps(out: &OutDir, height: &Raster, uplift: &[f32], drainage: &[f32]) -> Result<(), Failure> {
     let slope = height.slope();
     let drainage_km2: Vec<f32> = drainage.iter().map(|a| a / 1e6).collect();
     let channels: [(&str, &[f32]); 4] = [
@@ -284,7 +284,10 @@ pub(super) fn draw_frame(out: &OutDir, name: &str, sim: &Sim, title: &str, size:
     let flow = sim.flow();
     let land = land_of(sim, &flow, &[], title);
     let water = Water::new(&land);
-    let style = MapStyle { title: title.to_owned(), ..MapStyle::default() };
+    let style = MapStyle {
+        title: title.to_owned(),
+        ..MapStyle::default()
+    };
     let png = map_png(&land.surface(&raster, &water), &style)?;
     out.write(name, |w| w.write_all(&png))
         .map(drop)

@@ -66,7 +66,17 @@ impl World {
     /// The same world on other nodes: heights and displacements are interpolated.
     #[must_use]
     pub fn resampled(&self, tin: Arc<Tin>) -> Self {
-        let Self { seed, map, tin: from, time_yr, z, strata, plates, last_push_yr, totals } = self;
+        let Self {
+            seed,
+            map,
+            tin: from,
+            time_yr,
+            z,
+            strata,
+            plates,
+            last_push_yr,
+            totals,
+        } = self;
         let mut strata = strata.clone();
         strata.resample(|values| resample(from, &tin, values));
         Self {
