@@ -35,9 +35,6 @@ impl Pass {
 
     /// Equal heights go by the smaller node ids, so that the tree is unique.
     fn is_below(&self, other: &Self) -> bool {
-        if self.height != other.height && !self.height.is_nan() && !other.height.is_nan() {
-            return self.height < other.height;
-        }
         self.height
             .total_cmp(&other.height)
             .then((self.inner, self.outer).cmp(&(other.inner, other.outer)))
@@ -68,37 +65,43 @@ pub(super) struct BasinGraph {
 impl BasinGraph {
     /// The minimum spanning tree of `basins` basins and the passes that `each_pass` hands, each time the same, to the
     /// function it is given. The graph is connected.
-    ///
-    /// The passes of the first round are read where they are, and only what that round leaves is ever stored.
     pub(super) fn span(&mut self, basins: usize, each_pass: impl Fn(&mut dyn FnMut(Pass))) {
+        let mut basins = self.first_round(basins, each_pass);
+        while basins > 1 && !self.passes.is_empty() {
+            basins = self.round(basins);
+        }
+    }
+
+    /// The first round reads passes where they are, so that only what it leaves is ever stored. Returns the number of
+    /// basins that are left, like each round.
+    fn first_round(&mut self, basins: usize, each_pass: impl Fn(&mut dyn FnMut(Pass))) -> usize {
         self.tree.clear();
         self.passes.clear();
         self.lowest.clear();
         self.lowest.resize(basins, Pass::NONE);
         let lowest = &mut self.lowest;
         each_pass(&mut |pass| consider(lowest, pass));
-        let mut basins = self.join();
+        let left = self.join();
         let (number, passes) = (&self.number, &mut self.passes);
         each_pass(&mut |mut pass| {
-            pass.basins = pass.basins.map(|basin| number[basin as usize]);
-            if pass.basins[0] != pass.basins[1] {
+            if renumber(number, &mut pass) {
                 passes.push(pass);
             }
         });
-        while basins > 1 && !self.passes.is_empty() {
-            self.drop_parallels(basins);
-            self.lowest.clear();
-            self.lowest.resize(basins, Pass::NONE);
-            for &pass in &self.passes {
-                consider(&mut self.lowest, pass);
-            }
-            basins = self.join();
-            let number = &self.number;
-            self.passes.retain_mut(|pass| {
-                pass.basins = pass.basins.map(|basin| number[basin as usize]);
-                pass.basins[0] != pass.basins[1]
-            });
+        left
+    }
+
+    fn round(&mut self, basins: usize) -> usize {
+        self.drop_parallels(basins);
+        self.lowest.clear();
+        self.lowest.resize(basins, Pass::NONE);
+        for &pass in &self.passes {
+            consider(&mut self.lowest, pass);
         }
+        let left = self.join();
+        let number = &self.number;
+        self.passes.retain_mut(|pass| renumber(number, pass));
+        left
     }
 
     /// The passes of the tree; their `basins` are those of the round that chose them.
@@ -183,6 +186,12 @@ fn smaller(pass: &Pass) -> u32 {
     pass.basins[0].min(pass.basins[1])
 }
 
+/// Gives a pass the basins of the next round; false if they have become one.
+fn renumber(number: &[u32], pass: &mut Pass) -> bool {
+    pass.basins = pass.basins.map(|basin| number[basin as usize]);
+    pass.basins[0] != pass.basins[1]
+}
+
 /// Offers a pass to the basins at its ends.
 fn consider(lowest: &mut [Pass], pass: Pass) {
     for basin in pass.basins {
@@ -207,5 +216,80 @@ pub(super) fn spread_downstream(labels: &mut [u32], blank: u32, next: impl Fn(us
             labels[place] = label;
             place = next(place);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::Tin;
+    use crate::units::Extent;
+
+    /// Passes handled in all rounds after the first, per basin, where each node of a TIN is a basin.
+    fn work_per_basin(nodes: usize) -> f64 {
+        let land = Extent {
+            width: 1.0,
+            height: 1.0,
+        };
+        let tin = Tin::poisson(land, nodes, 1).unwrap();
+        // Equal heights too.
+        let height = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 20);
+        let each_pass = |visit: &mut dyn FnMut(Pass)| {
+            for inner in tin.nodes() {
+                for outer in tin.neighbours(inner).filter(|&outer| outer < inner) {
+                    visit(Pass {
+                        height: height(inner.0).max(height(outer.0)),
+                        inner,
+                        outer,
+                        basins: [inner.0, outer.0],
+                    });
+                }
+            }
+        };
+        let mut graph = BasinGraph::default();
+        let mut left = graph.first_round(nodes, each_pass);
+        assert!(left <= nodes / 2);
+        let mut work = graph.passes.len();
+        while left > 1 {
+            let before = left;
+            left = graph.round(before);
+            assert!(left <= before / 2, "a round leaves {left} of {before} basins");
+            // What the round kept of its passes is planar.
+            assert!(graph.passes.len() < 3 * before);
+            work += graph.passes.len();
+        }
+        assert_eq!(graph.tree().len(), nodes - 1);
+        work as f64 / nodes as f64
+    }
+
+    #[test]
+    fn work_is_linear_in_the_basins() {
+        for nodes in [1000, 4000, 16_000, 64_000] {
+            // 3 V passes of V basins, and V halves from round to round: 3 (1 + ½ + ¼ + …).
+            let work = work_per_basin(nodes);
+            assert!(work < 6.0, "{work} passes per basin of {nodes}");
+        }
+    }
+
+    #[test]
+    fn broken_heights_still_span() {
+        let pass = |height: f64, a: u32, b: u32| Pass {
+            height,
+            inner: NodeId(a),
+            outer: NodeId(b),
+            basins: [a, b],
+        };
+        let passes = [
+            pass(f64::NAN, 1, 0),
+            pass(f64::INFINITY, 2, 1),
+            pass(f64::NEG_INFINITY, 3, 2),
+            pass(f64::NAN, 3, 0),
+            pass(1.0, 3, 1),
+        ];
+        let mut graph = BasinGraph::default();
+        graph.span(4, |visit| passes.iter().for_each(|&pass| visit(pass)));
+        let mut tree: Vec<_> = graph.tree().iter().map(|p| (p.inner.0, p.outer.0)).collect();
+        tree.sort_unstable();
+        assert_eq!(tree, [(1, 0), (3, 1), (3, 2)]);
     }
 }

@@ -29,7 +29,7 @@ const BORDER_STRIP: f64 = 0.95;
 /// Factor by which the radius shrinks when a set saturates before it has enough nodes.
 const SHRINK: f64 = 0.98;
 
-/// Share of the still empty cells that a slice throws into, slice by slice, before cells are split. The first slices
+/// Share of the cells that a slice throws into, slice by slice, before cells are split. The first slices
 /// are thin: within one the darts fall row by row.
 const SLICES: [f64; 9] = [0.04, 0.04, 0.05, 0.06, 0.07, 0.08, 0.1, 0.12, 0.15];
 
@@ -340,10 +340,7 @@ impl DartBoard {
                 }
             }
         }
-        far.map(|far| {
-            far.iter()
-                .fold(false, |covered, &far| covered | (far < RADIUS_SQUARED))
-        })
+        far.map(|lanes| lanes.iter().any(|&far| far < RADIUS_SQUARED))
     }
 }
 
