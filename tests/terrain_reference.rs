@@ -20,7 +20,7 @@ fn compare(nodes: usize, seed: u64, edges: Edges, start: impl Fn(&Tin) -> Vec<f6
         edges,
         ..ErosionParams::default()
     };
-    let tin = Tin::poisson(TABLE, nodes, seed).unwrap();
+    let tin = Tin::poisson(TABLE, nodes, seed).expect("a rectangle");
     let uplift = vec![UPLIFT; nodes];
     let mut z = start(&tin);
     let mut erosion = Erosion::new(&tin);
