@@ -11,12 +11,14 @@ const CHUNK: usize = 16_384;
 /// How water moves over a surface, in vectors that are reused from one call to the next.
 ///
 /// * Each node drains to the neighbour of steepest descent; ties go to the smaller [`NodeId`].
+/// * On level ground water goes to the neighbour of the same height with the smallest id below the node's own, as if
+///   ids were tiny heights: a plain drains without a lake per node.
 /// * Nodes without a lower neighbour, away from the border, are pits: [`Lakes`] turns their basins' flow towards the
 ///   lowest way out.
 /// * Outlets drain to themselves: all border nodes when [`Outlets::Border`], and when [`Outlets::Lowest`] those
 ///   where no neighbour is lower or where a lake spills over the border.
 ///
-/// Cost is linear in the nodes, plus a sort of the passes between inner basins where there are any.
+/// Cost is linear in the nodes, whatever the number of lakes.
 #[derive(Clone, Debug, Default)]
 pub struct Flow {
     receivers: Vec<NodeId>,
@@ -72,7 +74,9 @@ impl Flow {
                     *receiver = if outlets == Outlets::Border && tin.is_border(node) {
                         node
                     } else {
-                        steepest_below(tin, z, node, 0.0).unwrap_or(node)
+                        steepest_below(tin, z, node, 0.0)
+                            .or_else(|| level_below(tin, z, node))
+                            .unwrap_or(node)
                     };
                 }
             });
@@ -170,6 +174,16 @@ impl Flow {
         }
         Ok(())
     }
+}
+
+/// The neighbour of the same height with the smallest id, if that is smaller than the node's. Border nodes have none:
+/// they let water out.
+fn level_below(tin: &Tin, z: &[f64], node: NodeId) -> Option<NodeId> {
+    let level = |to: &NodeId| *to < node && z[to.index()] == z[node.index()];
+    if tin.is_border(node) {
+        return None;
+    }
+    tin.neighbours(node).filter(level).min()
 }
 
 /// The neighbour towards which the descent is steepest, if it is steeper than `slope` (≥ 0); ties go to the smaller id.

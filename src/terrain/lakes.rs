@@ -7,6 +7,7 @@
 //! the border would leave there (Barnes et al. 2014), to the bit. Flow is *carved*: the path from the pass down to
 //! the pit is reversed, so rivers cross a lake along its former bed.
 
+use super::basin_graph::{BasinGraph, Pass, spread_downstream};
 use super::tin::{NodeId, Tin};
 
 /// The basin of all nodes that reach an outlet by going down.
@@ -30,22 +31,9 @@ pub struct Lakes {
     /// Whether each lake has any depth: on a plain, water at the level of the ground is no lake.
     wet: Vec<bool>,
     pits: Vec<NodeId>,
-    passes: Vec<Pass>,
-    /// The spanning tree.
-    tree: Vec<Pass>,
+    graph: BasinGraph,
     ends: PassEnds,
-    union: UnionFind,
     queue: Vec<u32>,
-}
-
-/// A way from one basin to another.
-#[derive(Clone, Copy, Debug)]
-struct Pass {
-    height: f64,
-    /// Its end in the basin.
-    inner: NodeId,
-    /// Its end in the other basin; `inner` itself where water falls over the border.
-    outer: NodeId,
 }
 
 impl Lakes {
@@ -63,96 +51,31 @@ impl Lakes {
             return;
         }
         self.label(receivers);
-        self.find_passes(tin, z);
-        self.span();
+        let basin = &self.basin;
+        self.graph
+            .span(self.pits.len() + 1, |visit| each_pass(tin, z, basin, visit));
         self.carve(z, receivers);
     }
 
-    /// Basins are numbered by pit, from 1. Each walk downstream ends at a labelled node and labels its path.
+    /// Basins are numbered by pit, from 1; nodes whose path ends at none are outside.
     fn label(&mut self, receivers: &[NodeId]) {
         self.basin.resize(receivers.len(), UNLABELLED);
-        for (k, pit) in self.pits.iter().enumerate() {
-            self.basin[pit.index()] = k as u32 + 1;
-        }
-        for start in 0..receivers.len() {
-            let mut end = start;
-            while self.basin[end] == UNLABELLED && receivers[end].index() != end {
-                end = receivers[end].index();
-            }
-            // A walk that ends unlabelled has found an outlet.
-            let label = if self.basin[end] == UNLABELLED {
-                OUTSIDE
-            } else {
-                self.basin[end]
-            };
-            self.basin[end] = label;
-            let mut i = start;
-            while self.basin[i] == UNLABELLED {
-                self.basin[i] = label;
-                i = receivers[i].index();
+        for (i, receiver) in receivers.iter().enumerate() {
+            if receiver.index() == i {
+                self.basin[i] = OUTSIDE;
             }
         }
-    }
-
-    /// All links out of closed basins, each once, and the border nodes inside them.
-    fn find_passes(&mut self, tin: &Tin, z: &[f64]) {
-        self.passes.clear();
-        for node in tin.nodes() {
-            let i = node.index();
-            let basin = self.basin[i];
-            if basin == OUTSIDE {
-                continue;
-            }
-            if tin.is_border(node) {
-                self.passes.push(Pass {
-                    height: z[i],
-                    inner: node,
-                    outer: node,
-                });
-            }
-            for outer in tin.neighbours(node) {
-                let other = self.basin[outer.index()];
-                if other < basin {
-                    self.passes.push(Pass {
-                        height: z[i].max(z[outer.index()]),
-                        inner: node,
-                        outer,
-                    });
-                }
-            }
+        for (k, pit) in (1..).zip(&self.pits) {
+            self.basin[pit.index()] = k;
         }
-    }
-
-    /// Kruskal's minimum spanning tree. Equal heights go by the smaller node ids, so the tree is unique.
-    fn span(&mut self) {
-        self.passes.sort_unstable_by(|a, b| {
-            a.height
-                .total_cmp(&b.height)
-                .then(a.inner.cmp(&b.inner))
-                .then(a.outer.cmp(&b.outer))
-        });
-        self.union.reset(self.pits.len() + 1);
-        self.tree.clear();
-        let mut missing = self.pits.len();
-        for k in 0..self.passes.len() {
-            if missing == 0 {
-                break;
-            }
-            let pass = self.passes[k];
-            if self
-                .union
-                .join(self.basin[pass.inner.index()], outer_basin(&self.basin, &pass))
-            {
-                self.tree.push(pass);
-                missing -= 1;
-            }
-        }
+        spread_downstream(&mut self.basin, UNLABELLED, |i| receivers[i].index());
     }
 
     /// Walks the tree from the outside inwards: levels, lakes, and reversed paths.
     fn carve(&mut self, z: &[f64], receivers: &mut [NodeId]) {
         let basins = self.pits.len() + 1;
-        self.ends.list(&self.tree, |pass| {
+        let tree = self.graph.tree();
+        self.ends.list(tree, |pass| {
             [self.basin[pass.inner.index()], outer_basin(&self.basin, pass)]
         });
         self.spill.resize(basins, f64::NEG_INFINITY);
@@ -165,7 +88,7 @@ impl Lakes {
             let level = self.spill[basin as usize];
             let mut end = self.ends.first[basin as usize];
             while end != NONE {
-                let pass = self.tree[end as usize / 2];
+                let pass = tree[end as usize / 2];
                 // Even ends are inner ones: the other basin then is the outer one.
                 let (other, mouth, towards) = if end.is_multiple_of(2) {
                     (outer_basin(&self.basin, &pass), pass.outer, pass.inner)
@@ -218,6 +141,36 @@ impl Lakes {
     }
 }
 
+/// All links out of closed basins, each once, and the border nodes inside them.
+fn each_pass(tin: &Tin, z: &[f64], basin: &[u32], visit: &mut dyn FnMut(Pass)) {
+    for node in tin.nodes() {
+        let i = node.index();
+        let inside = basin[i];
+        if inside == OUTSIDE {
+            continue;
+        }
+        if tin.is_border(node) {
+            visit(Pass {
+                height: z[i],
+                inner: node,
+                outer: node,
+                basins: [inside, OUTSIDE],
+            });
+        }
+        for outer in tin.neighbours(node) {
+            let beyond = basin[outer.index()];
+            if beyond < inside {
+                visit(Pass {
+                    height: z[i].max(z[outer.index()]),
+                    inner: node,
+                    outer,
+                    basins: [inside, beyond],
+                });
+            }
+        }
+    }
+}
+
 /// The basin at the outer end of a pass.
 fn outer_basin(basin: &[u32], pass: &Pass) -> u32 {
     if pass.inner == pass.outer {
@@ -259,46 +212,5 @@ fn reverse_path(receivers: &mut [NodeId], mouth: NodeId, towards: NodeId) {
             return;
         }
         (receiver, node) = (node, next);
-    }
-}
-
-/// Disjoint sets with path halving, joined towards the smaller representative's tree by size.
-#[derive(Clone, Debug, Default)]
-struct UnionFind {
-    parent: Vec<u32>,
-    size: Vec<u32>,
-}
-
-impl UnionFind {
-    fn reset(&mut self, count: usize) {
-        self.parent.clear();
-        self.parent.extend(0..count as u32);
-        self.size.clear();
-        self.size.resize(count, 1);
-    }
-
-    fn find(&mut self, mut k: u32) -> u32 {
-        while self.parent[k as usize] != k {
-            let grandparent = self.parent[self.parent[k as usize] as usize];
-            self.parent[k as usize] = grandparent;
-            k = grandparent;
-        }
-        k
-    }
-
-    /// Joins two sets; false if they were one.
-    fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.find(a), self.find(b));
-        if a == b {
-            return false;
-        }
-        let (large, small) = if self.size[a as usize] >= self.size[b as usize] {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        self.parent[small as usize] = large;
-        self.size[large as usize] += self.size[small as usize];
-        true
     }
 }

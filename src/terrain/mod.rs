@@ -4,6 +4,7 @@
 //! [`Lakes`] where there are pits; [`StreamPower`] incises, [`Landslides`] slide; [`Erosion`] makes a step of all three.
 //! [`StartLand`] is the land before the first step, [`TinRaster`] turns nodes into pixels.
 
+mod basin_graph;
 mod erosion;
 mod flow;
 mod lakes;

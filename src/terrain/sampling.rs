@@ -1,11 +1,11 @@
 //! Poisson-disc sampling of a rectangle: irregular, isotropic, without clumps or holes.
 //!
 //! Random sequential insertion ("dart throwing", Cook 1986) on a background grid. Darts fall in *slices*: a slice
-//! visits the still empty cells and throws into each with a small probability, so that the darts arrive in an order
-//! that is nearly random in space, which is what makes the result isotropic; cells that stay empty are split into
-//! quarters, and quarters covered by one disc are dropped, until the set is saturated (Ebeida et al. 2012, *A simple
-//! algorithm for maximal Poisson-disk sampling in high dimensions*). The radius is chosen so that the requested
-//! number of nodes falls three or four per cent short of saturation; throwing stops at that number exactly.
+//! throws into a small random share of the cells, so that the darts arrive in an order that is nearly random in space,
+//! which is what makes the result isotropic; cells that stay empty are split into quarters, and quarters covered by
+//! one disc are dropped, until the set is saturated (Ebeida et al. 2012, *A simple algorithm for maximal Poisson-disk
+//! sampling in high dimensions*). The radius is chosen so that the requested number of nodes falls three or four per
+//! cent short of saturation; throwing stops at that number exactly.
 
 use glam::DVec2;
 use rand_pcg::Pcg64Mcg;
@@ -29,12 +29,12 @@ const BORDER_STRIP: f64 = 0.95;
 /// Factor by which the radius shrinks when a set saturates before it has enough nodes.
 const SHRINK: f64 = 0.98;
 
-/// Share of the still empty cells that a slice throws into, slice by slice, before cells are split. The first slices
+/// Share of the cells that a slice throws into, slice by slice, before cells are split. The first slices
 /// are thin: within one the darts fall row by row.
 const SLICES: [f64; 9] = [0.04, 0.04, 0.05, 0.06, 0.07, 0.08, 0.1, 0.12, 0.15];
 
 /// Slices on each level of split cells.
-const SPLIT_SLICES: [f64; 3] = [0.3, 0.5, 0.8];
+const SPLIT_SLICES: [f64; 3] = [0.3, 0.6, 0.8];
 
 /// Times a cell is split before what is left of it counts as covered.
 const LEVELS: u32 = 6;
@@ -239,44 +239,45 @@ impl DartBoard {
         for level in 0..LEVELS {
             let slices: &[f64] = if level == 0 { &SLICES } else { &SPLIT_SLICES };
             for &share in slices {
-                self.throw_slice(&mut open, side, share, target, rng);
+                // The last samples, which end the throwing, must not gather where a sweep over the rows begins.
+                let stride = if level < 2 { 1 } else { even_stride(open.len()) };
+                self.throw_slice(&open, side, share, stride, target, rng);
                 if self.positions.len() >= target {
                     return;
                 }
             }
             side *= 0.5;
             open = self.split(&open, side);
-            if level > 0 {
-                shuffle(&mut open, rng);
-            }
         }
     }
 
-    /// One dart into a random `share` of the open squares; keeps those still open.
+    /// One dart into each of a random `share` of the squares, unless their cell holds a sample by now.
+    /// They are visited in steps of `stride`, round and round.
     fn throw_slice(
         &mut self,
-        open: &mut Vec<Open>,
+        open: &[Open],
         side: f32,
         share: f64,
+        stride: usize,
         target: usize,
         rng: &mut Pcg64Mcg,
     ) {
-        // One random word serves a dart: 16 bits decide whether it flies, 24 bits place it on each axis.
-        let flies = (share * 65536.0) as u64;
+        let gaps = gaps(share);
         let step = side / (1 << 24) as f32;
-        open.retain(|&square| {
+        let mut next = usize::from(gaps[rng.next_u64() as usize % GAPS]) - 1;
+        while next < open.len() && self.positions.len() < target {
+            let square = open[next * stride % open.len()];
+            // One random word serves a dart: 24 bits place it on each axis, others say where the next one falls.
             let word = rng.next_u64();
-            if word & 0xFFFF >= flies || self.positions.len() >= target {
-                return true;
-            }
+            next += usize::from(gaps[word as usize % GAPS]);
             if !self.is_empty(square.cell) {
-                return false;
+                continue;
             }
             let (west, south) = self.corner(square, side);
             let x = west + (word >> 40) as f32 * step;
             let y = south + (word >> 16 & 0xFF_FFFF) as f32 * step;
             if self.is_covered(square.cell, x, y, 0.0) {
-                return true;
+                continue;
             }
             let p = DVec2::new(f64::from(x), f64::from(y)) * self.cell;
             // Strictly inside: the border has its own nodes.
@@ -284,10 +285,8 @@ impl DartBoard {
                 self.xs[square.cell as usize] = x;
                 self.ys[square.cell as usize] = y;
                 self.positions.push(p);
-                return false;
             }
-            true
-        });
+        }
     }
 
     /// The quarters, of the given side, of the open squares that no single disc covers.
@@ -295,30 +294,90 @@ impl DartBoard {
         let mut quarters = Vec::with_capacity(open.len());
         for square in open.iter().filter(|square| self.is_empty(square.cell)) {
             let (west, south) = self.corner(*square, 2.0 * side);
-            if self.is_covered(square.cell, west + side, south + side, side) {
+            let half = 0.5 * side;
+            // Whole cells are rarely covered by one disc, smaller squares are more often than not.
+            let covered = if side >= 0.5 {
+                self.covered_quarters(square.cell, west + side, south + side, half)
+            } else if self.is_covered(square.cell, west + side, south + side, side) {
                 continue;
-            }
-            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                let x = west + (f32::from(dx) + 0.5) * side;
-                let y = south + (f32::from(dy) + 0.5) * side;
-                if !self.is_covered(square.cell, x, y, 0.5 * side) {
+            } else {
+                QUARTERS.map(|(sub_x, sub_y)| {
+                    let (x, y) = (f32::from(sub_x) * side, f32::from(sub_y) * side);
+                    self.is_covered(square.cell, west + x + half, south + y + half, half)
+                })
+            };
+            for ((sub_x, sub_y), covered) in QUARTERS.into_iter().zip(covered) {
+                if !covered {
                     quarters.push(Open {
                         cell: square.cell,
-                        sub_x: 2 * square.sub_x + dx,
-                        sub_y: 2 * square.sub_y + dy,
+                        sub_x: 2 * square.sub_x + sub_x,
+                        sub_y: 2 * square.sub_y + sub_y,
                     });
                 }
             }
         }
         quarters
     }
+
+    /// Which [`QUARTERS`] of the cell around (x, y) are covered by a single disc; `half` is half a quarter's side.
+    ///
+    /// Without branches: to the processor, which discs cover what is a coin toss. A disc that covers a quarter of a
+    /// cell lies one cell away at most.
+    fn covered_quarters(&self, cell: u32, x: f32, y: f32, half: f32) -> [bool; 4] {
+        const N: usize = 4;
+        // Squared distance to the far corner of each quarter, the smallest in each lane.
+        let mut far = [[f32::INFINITY; N]; 4];
+        let squared = |sample: f32, middle: f32| ((sample - middle).abs() + half).powi(2);
+        for row in 0..3 {
+            let first = cell as usize + row * self.stride - (self.stride + 1);
+            let (xs, ys) = (&self.xs[first..first + N], &self.ys[first..first + N]);
+            for lane in 0..N {
+                let (west, east) = (squared(xs[lane], x - half), squared(xs[lane], x + half));
+                let (south, north) = (squared(ys[lane], y - half), squared(ys[lane], y + half));
+                let corners = [west + south, east + south, west + north, east + north];
+                for (far, corner) in far.iter_mut().zip(corners) {
+                    far[lane] = if corner < far[lane] { corner } else { far[lane] };
+                }
+            }
+        }
+        far.map(|lanes| lanes.iter().any(|&far| far < RADIUS_SQUARED))
+    }
 }
 
-/// Fisher–Yates. The last samples, which end the throwing, must not gather where a sweep over the rows begins.
-fn shuffle(squares: &mut [Open], rng: &mut Pcg64Mcg) {
-    for k in (1..squares.len()).rev() {
-        squares.swap(k, (rng.next_u64() % (k as u64 + 1)) as usize);
+/// The quarters of a square, as steps east and north.
+const QUARTERS: [(u16, u16); 4] = [(0, 0), (1, 0), (0, 1), (1, 1)];
+
+/// Entries of a table of gaps.
+const GAPS: usize = 1024;
+
+/// Quantiles of the distance from one success to the next in trials that succeed with probability `share`.
+fn gaps(share: f64) -> [u16; GAPS] {
+    let mut table = [1; GAPS];
+    let (mut gap, mut longer) = (1, 1.0 - share);
+    for (k, entry) in table.iter_mut().enumerate() {
+        while longer > 1.0 - (k as f64 + 0.5) / GAPS as f64 {
+            gap += 1;
+            longer *= 1.0 - share;
+        }
+        *entry = gap;
     }
+    table
+}
+
+/// A step that visits all of `count` places once, evenly from the first few on: by the golden section, with no divisor
+/// in common.
+fn even_stride(count: usize) -> usize {
+    let common = |mut a: usize, mut b: usize| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let mut stride = (count as f64 * 0.618_034) as usize;
+    while common(stride, count) != 1 {
+        stride += 1;
+    }
+    stride
 }
 
 /// A permutation of `positions` along a Hilbert curve over `extent`: nodes near in the plane are near in memory.
