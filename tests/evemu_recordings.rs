@@ -246,7 +246,7 @@ fn sizes_in_an_unknown_unit_are_left_out() {
 }
 
 #[test]
-fn range_and_size_come_from_the_recording_before_the_options() {
+fn range_and_size_come_from_the_options_or_the_recording() {
     let touch = at(0, "id 1,x 320,y 120,sync");
     let described = "# Event type 3 (EV_ABS)\n# Event code 53 (ABS_MT_POSITION_X)\n# Min 20\n# Max 620\n\
                      # Resolution 10\n# Event code 54 (ABS_MT_POSITION_Y)\n# Min 0\n# Max 300\n# Resolution 5\n\
@@ -275,9 +275,9 @@ fn range_and_size_come_from_the_recording_before_the_options() {
     );
     assert_eq!(
         import(&(described.to_owned() + axes), &options),
-        Ok(([64.0, 96.0], [32.0, 24.0]))
+        Ok(([100.0, 110.0], [10.0, 20.0]))
     );
-    assert_eq!(import(axes, &options), Ok(([100.0, 110.0], [50.0, 27.5])));
+    assert_eq!(import(axes, &options), Ok(([100.0, 110.0], [10.0, 20.0])));
     assert_eq!(import("", &options), Ok(([100.0, 110.0], [10.0, 20.0])));
     let error = import("", &none).unwrap_err();
     assert!(error.starts_with("rec:2: expected a range"), "{error}");
@@ -321,19 +321,21 @@ fn range_and_size_come_from_the_recording_before_the_options() {
 }
 
 #[test]
-fn options_that_are_not_used_say_so() {
+fn options_win_over_what_a_recording_says_and_say_so() {
     let options = EvemuOptions {
-        range: Some([0.0, 1.0, 0.0, 1.0]),
-        size_mm: Some([1.0, 1.0].into()),
+        range: Some([0.0, 640.0, 0.0, 480.0]),
+        size_mm: Some([200.0, 150.0].into()),
     };
     let text = HEAD.to_owned() + &at(0, "id 1,x 320,y 120,sync,id -1,sync");
     let imported = import_evemu(text.as_bytes(), "rec", &options).unwrap();
-    assert_eq!(imported.size_mm.to_array(), [400.0, 300.0]);
+    assert_eq!(imported.size_mm.to_array(), [200.0, 150.0]);
+    let landed = imported.frames[0].events[0].contact.position;
+    assert_eq!(landed.to_array(), [100.0, 37.5]);
     assert_eq!(
         imported.warnings,
         [
-            "--range not used: the recording has its own",
-            "--size-mm not used: the recording has its own",
+            "--range used in place of the recording's own",
+            "--size-mm used in place of the recording's own",
         ]
     );
 }

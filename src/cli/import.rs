@@ -10,6 +10,7 @@ use super::failure::Failure;
 use crate::export::OutDir;
 use crate::gesture::file::{GestureFile, Header};
 use crate::input::evemu::{EvemuOptions, import_evemu};
+use crate::sim::SimParams;
 
 /// Reads the recording of `args` and writes it as a gesture file.
 pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
@@ -32,7 +33,16 @@ pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
     for warning in &imported.warnings {
         Console::warn(warning);
     }
+    // The picture shows the land as the session leaves it, but no younger than a push lasts: a short stroke has time to
+    // become a range, and a long session is not worn down for another 5 My.
+    let params = SimParams::default();
+    let session_s = imported
+        .frames
+        .last()
+        .map_or(0.0, |frame| frame.t_us as f64 / 1e6);
+    let years = (params.run_on_yr - session_s * params.pace_yr_per_s).max(0.0);
     let header = Header {
+        years: Some(years.round()),
         title: Some(imported.title),
         ..Header::new(imported.size_mm)
     };

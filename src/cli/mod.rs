@@ -164,10 +164,10 @@ struct ImportArgs {
     /// The gesture file to write.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Range of the device's coordinates, where the recording does not tell.
+    /// Range of the device's coordinates, where the recording does not tell or is wrong.
     #[arg(long, value_name = "X0,X1,Y0,Y1", allow_negative_numbers = true)]
     range: Option<String>,
-    /// Size of the device's surface in millimetres, where the recording does not tell.
+    /// Size of the device's surface in millimetres, where the recording does not tell or is wrong.
     #[arg(long, value_name = "W,H")]
     size_mm: Option<String>,
 }

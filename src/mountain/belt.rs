@@ -321,6 +321,11 @@ fn between(
     let room = gap.max(6.0 * KM);
     let fade = (params.strike_fade * room).clamp(8.0 * KM, 30.0 * KM);
 
+    let kind = if closing > 0.0 { Kind::Range } else { Kind::Rift };
+    let reach = match kind {
+        Kind::Range => params.reach,
+        Kind::Rift => params.rift_reach,
+    };
     let screened: f64 = movers
         .iter()
         .enumerate()
@@ -335,7 +340,7 @@ fn between(
     let weight = smoother((closing.abs() - 0.15) / 0.5)
         // Hulls that nearly touch leave no room for a belt; it would be a wall along the slit.
         * smoother((gap - 6.0 * KM) / (14.0 * KM))
-        * (1.0 - smoother((gap - params.reach[0]) / (params.reach[1] - params.reach[0])))
+        * (1.0 - smoother((gap - reach[0]) / (reach[1] - reach[0])))
         * smoother(1.0 + facing / (0.75 * fade))
         * smoother(relative.length() / (0.3 * (shift_a.length() + shift_b.length())))
         * screened;
@@ -345,7 +350,6 @@ fn between(
     // The spindle lives in the gap; all lengths shrink together when the gap is short.
     let short = (room / (params.front_width + params.back_width + 4.0 * params.rim_offset)).min(1.0);
     let offset = params.rim_offset * short;
-    let kind = if closing > 0.0 { Kind::Range } else { Kind::Rift };
     let half = room / 2.0;
     // The fault stands off the stable plate, so that the crest comes into the middle third of the gap; the back
     // takes half the gap, and no less than asked for.

@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::belt::Belt;
-use super::grid::Field;
+use super::grid::{Field, Grid};
 use super::plate::Pair;
 
 /// Dip of the main thrust under the range, degrees (the paper prescribes none; a few tens of degrees are usual).
 pub const DIP_DEG: f64 = 30.0;
 
 /// Traces shorter than this (metres) are not drawn.
-const SHORTEST: f64 = 5_000.0;
+const SHORTEST: f64 = 10_000.0;
 
 /// A fault on the map.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +37,25 @@ impl FaultTrace {
                 p.distance(a + along * t)
             })
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Its longest stretch that keeps `margin` metres off the border of the grid: nearer, uplift fades with the border and
+    /// its level follows that. `None` if too little is left to draw.
+    pub(super) fn within(self, grid: Grid, margin: f64) -> Option<Self> {
+        let size = DVec2::new(grid.cols as f64, grid.rows as f64) * grid.cell;
+        let inside = |p: &DVec2| {
+            let at = DVec2::new(p.x - grid.north_west.x, grid.north_west.y - p.y);
+            at.min(size - at).min_element() > margin
+        };
+        let longest = self
+            .points
+            .split(|p| !inside(p))
+            .max_by_key(|stretch| stretch.len())?;
+        let kept = Self {
+            pair: self.pair,
+            points: longest.to_vec(),
+        };
+        (kept.length() >= SHORTEST).then_some(kept)
     }
 
     /// Its length, metres.

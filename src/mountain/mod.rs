@@ -19,6 +19,7 @@ pub mod hull;
 pub mod params;
 pub mod plate;
 pub mod power;
+pub mod residue;
 pub mod strata;
 pub mod tectonics;
 pub mod transport;

@@ -41,8 +41,8 @@ pub struct MountainParams {
     /// Uplift is softly capped here. Default 1.3e-3 m/yr. Range 1e-4–1e-2: real belts rarely exceed a few mm/yr, and
     /// summits grow with it.
     pub rise_limit: f64,
-    /// Subsidence of a rift is softly capped here (a positive rate). Default 0.3e-3 m/yr: in the 5 My of a push that
-    /// is as deep as Baikal. Range 0–5e-3; 0 switches rifts off.
+    /// Subsidence of a rift is softly capped here (a positive rate). Default 0.2e-3 m/yr: in the 5 My of a push that
+    /// is the depth of a great rift lake. Range 0–5e-3; 0 switches rifts off.
     pub sink_limit: f64,
     /// Greatest width of a rift. Default 24 km. Range 5–100 km: real rifts are some 20–60 km wide however far apart
     /// the plates that part (Kenya, Rhine, Baikal); wider ones become inland seas.
@@ -69,6 +69,12 @@ pub struct MountainParams {
     /// A second plate takes part in a push fully up to the first gap and not at all beyond the second. Default
     /// 50 km, 90 km.
     pub reach: [f64; 2],
+    /// The same for plates that part. Default 20 km, 60 km: two visitors who push away from each other across half
+    /// the table do not tear it.
+    pub rift_reach: [f64; 2],
+    /// Towards the border of the map, which stands still, uplift fades over this distance. Default 5 km. Range 0–30 km:
+    /// at 0 a range that reaches the border ends in a wall.
+    pub border_fade: f64,
     /// Sinuosity: how far fronts wander from their smooth curve. Default 1.3 km. Range 0–4 km; 0 makes fields exactly
     /// symmetrical where gestures are.
     pub sinuosity: f64,
@@ -92,7 +98,8 @@ impl Default for MountainParams {
             rule: UpliftRule::Belts,
             rise_per_thickening: 2.6e-3,
             rise_limit: 1.3e-3,
-            sink_limit: 0.3e-3,
+            sink_limit: 0.2e-3,
+            rift_reach: [20.0 * KM, 60.0 * KM],
             rift_width: 24.0 * KM,
             paper_mean: 5e-4,
             fault_level: 0.25,
@@ -102,6 +109,7 @@ impl Default for MountainParams {
             fault_stand: 0.2,
             strike_fade: 0.5,
             reach: [50.0 * KM, 90.0 * KM],
+            border_fade: 5.0 * KM,
             sinuosity: 1.3 * KM,
             dome_radius: 3.5 * KM,
             dome_height: 150.0,
@@ -118,6 +126,7 @@ impl MountainParams {
             rule: UpliftRule::Paper,
             sink_limit: 0.0,
             sinuosity: 0.0,
+            border_fade: 0.0,
             ..Self::default()
         }
     }

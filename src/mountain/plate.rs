@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::hull::Hull;
 use super::params::MountainParams;
+use super::residue::{MAX_RESIDUES, Residue};
 use crate::gesture::contact::Side;
 use crate::gesture::event::{HandEvent, HandId, Leg};
 use crate::gesture::rigid::{RigidFit, RigidMotion};
@@ -164,6 +165,7 @@ pub enum Applied {
 pub struct PlateSet {
     pub(super) plates: Vec<Plate>,
     domes: Vec<Dome>,
+    residues: Vec<Residue>,
     pub(super) sides: BTreeMap<Pair, FaultSide>,
     next_id: u32,
 }
@@ -177,6 +179,45 @@ impl PlateSet {
     /// The domes, oldest first.
     pub fn domes(&self) -> &[Dome] {
         &self.domes
+    }
+
+    /// What earlier pushes of the plates still do.
+    pub fn residues(&self) -> &[Residue] {
+        &self.residues
+    }
+
+    /// Keeps what is left of a push whose plate has gone on to another.
+    pub fn leave(&mut self, residue: Residue) {
+        self.residues.push(residue);
+        if self.residues.len() > MAX_RESIDUES {
+            let ends = |r: &Residue| r.expires_yr;
+            let first = (0..self.residues.len())
+                .min_by(|&a, &b| ends(&self.residues[a]).total_cmp(&ends(&self.residues[b])));
+            if let Some(first) = first {
+                self.residues.remove(first);
+            }
+        }
+    }
+
+    /// These plates without what earlier pushes still do.
+    #[must_use]
+    pub fn without_residues(&self) -> Self {
+        Self {
+            residues: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// These plates without the push of `id`, as if it were spent at `now_yr`.
+    #[must_use]
+    pub fn without_push(&self, id: PlateId, now_yr: f64, params: &MountainParams) -> Self {
+        let mut others = self.without_residues();
+        if let Some(plate) = others.plates.iter_mut().find(|plate| plate.id == id) {
+            plate.expires_yr = now_yr;
+            plate.held = false;
+        }
+        others.settle(now_yr, params);
+        others
     }
 
     /// The plate of that name.
@@ -193,6 +234,7 @@ impl PlateSet {
     /// True while a push is unspent or a dome rises: the world has something to do.
     pub fn active(&self, now_yr: f64, params: &MountainParams) -> bool {
         self.plates.iter().any(|p| p.state(now_yr) == PlateState::Pushing)
+            || self.residues.iter().any(|r| now_yr < r.expires_yr)
             || self.domes.iter().any(|d| now_yr < d.begun_yr + params.dome_years)
     }
 
@@ -213,6 +255,7 @@ impl PlateSet {
         params: &MountainParams,
     ) -> Applied {
         self.domes.retain(|d| now_yr < d.begun_yr + params.dome_years);
+        self.residues.retain(|r| now_yr < r.expires_yr);
         let to_plan = |points: &[DVec2]| points.iter().map(|&p| map.to_plan(p)).collect::<Vec<_>>();
         let applied = match event {
             HandEvent::Rest { hand, side, fingers } => {
@@ -399,6 +442,7 @@ impl PlateSet {
 
     pub(super) fn forget(&mut self, id: PlateId) {
         self.plates.retain(|p| p.id != id);
+        self.residues.retain(|r| r.plate != id);
         self.sides
             .retain(|pair, _| pair.first != id && pair.second != Some(id));
     }

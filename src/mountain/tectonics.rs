@@ -8,12 +8,17 @@ use super::fault::{FaultTrace, trace};
 use super::grid::{Field, Grid};
 use super::params::MountainParams;
 use super::plate::{Pair, PlateSet};
+use super::residue;
 use super::transport::{
     CpuTransport, MovedBody, TransportField, TransportProblem, TransportReport, TransportStage,
 };
 use super::uplift::{NOBODY, UpliftStage};
 use crate::gesture::rigid::RigidMotion;
 use crate::units::Extent;
+
+/// A belt crops out in a fault of its own only where it rises at least this fast against the fastest: slower ones drape
+/// the flanks of others.
+const LEAST_FAULTED: f64 = 0.3;
 
 /// Figures about an uplift field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -159,16 +164,27 @@ impl<S: TransportStage> Tectonics<S> {
             &mut out.uplift,
         );
         out.faults.clear();
+        let most = out.uplift.data.iter().copied().fold(0.0, f32::max);
         for (index, belt) in belts.iter().enumerate().take(usize::from(NOBODY)) {
             if belt.kind == Kind::Rift {
                 continue;
             }
-            if let Some(top) = stage.percentile_of(index as u8, &out.uplift, 0.95) {
+            if let Some(top) = stage.percentile_of(index as u8, &out.uplift, 0.95)
+                && top >= LEAST_FAULTED * f64::from(most)
+            {
                 let level = params.fault_level * top;
-                out.faults
-                    .extend(trace(&out.uplift, &stage.owner, index as u8, belt, level));
+                let traces = trace(&out.uplift, &stage.owner, index as u8, belt, level);
+                out.faults.extend(
+                    traces
+                        .into_iter()
+                        .filter_map(|fault| fault.within(grid, params.border_fade)),
+                );
             }
         }
+        residue::join(
+            &mut out.uplift,
+            plates.residues().iter().filter(|r| now_yr < r.expires_yr),
+        );
         out.report = report(out);
     }
 }

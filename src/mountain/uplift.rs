@@ -144,7 +144,8 @@ impl UpliftStage {
                             softly_capped(params.rise_per_thickening * sum.sqrt().sqrt(), limit)
                         };
                         let net = rate(range, params.rise_limit) - rate(rift, params.sink_limit);
-                        *u = (net * off_rims(&problem.bodies, p, params)) as f32;
+                        *u =
+                            (net * off_rims(&problem.bodies, p, params) * off_border(grid, p, params)) as f32;
                     }
                 }
             });
@@ -227,6 +228,14 @@ fn off_rims(bodies: &[MovedBody], p: DVec2, params: &MountainParams) -> f64 {
         .iter()
         .map(|body| smoother(body.hull.nearest(p).distance / (3.0 * params.rim_offset).max(1.0)))
         .product()
+}
+
+/// Fades towards the border of the map.
+fn off_border(grid: Grid, p: DVec2, params: &MountainParams) -> f64 {
+    let size = DVec2::new(grid.cols as f64, grid.rows as f64) * grid.cell;
+    let at = DVec2::new(p.x - grid.north_west.x, grid.north_west.y - p.y);
+    let inside = at.min(size - at).min_element();
+    smoother(inside / params.border_fade.max(1.0))
 }
 
 /// Follows `rate` while it is small and levels off at `limit`.

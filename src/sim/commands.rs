@@ -99,7 +99,7 @@ impl Sim {
             .uplift
             .faults
             .iter()
-            .map(|fault| (fault.distance(at), fault.pair));
+            .map(|(fault, _)| (fault.distance(at), fault.pair));
         let Some((distance, pair)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return false;
         };

@@ -9,6 +9,7 @@
 //! and a step that yields a number that is none is *quarantined* (the land before it stays).
 
 mod commands;
+mod drive;
 mod params;
 mod rollback;
 mod step;

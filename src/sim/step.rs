@@ -3,21 +3,15 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use glam::DVec2;
-
+use super::drive::Uplift;
 use super::rollback::Rollback;
 use super::{SimParams, TICK_US, World};
 use crate::gesture::contact::{ContactKey, InputFrame, Side};
 use crate::gesture::event::{HandEvent, Leg};
 use crate::gesture::hand::{ContactStats, HandTracker};
-use crate::mountain::plate::Pair;
 use crate::mountain::tectonics::TectonicReport;
-use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateState, TectonicField, Tectonics};
+use crate::mountain::{TectonicField, Tectonics};
 use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets};
-use crate::units::KM;
-
-/// How far from its fingers a push must move the land, metres: as far as an eye that follows the finger sees.
-const ANSWER_REACH: f64 = 30.0 * KM;
 
 /// Numbers that were none, and what became of them. They never reach the land.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,21 +57,6 @@ pub(super) struct Snapshot {
     pub(super) world: World,
 }
 
-/// What moves the land now: which plates do what, and how many domes rise.
-type Drive = (Vec<(PlateId, PlateState)>, usize);
-
-/// What the plates do to the land, as far as it outlives the computation.
-#[derive(Debug)]
-pub(super) struct Uplift {
-    /// m/yr on the grid.
-    pub(super) field: Field,
-    /// m/yr at the nodes.
-    pub(super) at_nodes: Vec<f64>,
-    pub(super) faults: Vec<FaultTrace>,
-    /// What it was computed for.
-    drive: Drive,
-}
-
 /// All that a roll-back must restore.
 #[derive(Clone, Debug)]
 pub(super) struct State {
@@ -94,11 +73,11 @@ pub(super) struct State {
     pub(super) stale: bool,
     pub(super) undo: Vec<Arc<Snapshot>>,
     /// The uplift that each unfinished push found.
-    found: BTreeMap<Leg, Arc<Uplift>>,
+    pub(super) found: BTreeMap<Leg, Arc<Uplift>>,
     pub(super) counts: SessionCounts,
-    quarantine: Quarantine,
+    pub(super) quarantine: Quarantine,
     /// Figures of the last uplift that plates drove.
-    last_motion: Option<TectonicReport>,
+    pub(super) last_motion: Option<TectonicReport>,
 }
 
 /// A session: the world and all that moves it.
@@ -111,9 +90,9 @@ pub struct Sim {
     rollback: Rollback<State>,
     /// Contacts found out to be none, whatever checkpoint comes back.
     banned: Vec<ContactKey>,
-    tectonics: Tectonics,
+    pub(super) tectonics: Tectonics,
     /// Scratch of the stages.
-    field: TectonicField,
+    pub(super) field: TectonicField,
     erosion: Erosion,
     /// The land before the step, for the quarantine.
     before: Vec<f64>,
@@ -123,12 +102,7 @@ impl Sim {
     /// A session on `world`.
     pub fn new(world: World, params: SimParams) -> Self {
         let field = TectonicField::still(world.map.extent(), &params.mountain);
-        let still = Uplift {
-            field: field.uplift.clone(),
-            at_nodes: vec![0.0; world.tin.len()],
-            faults: Vec::new(),
-            drive: Drive::default(),
-        };
+        let still = Uplift::still(&field, world.tin.len());
         let state = State {
             hands: HandTracker::new(params.gesture, world.map.size_mm()),
             tick: 0,
@@ -339,121 +313,6 @@ impl Sim {
             }
             self.play_tick(&due);
         }
-        true
-    }
-
-    fn apply(&mut self, event: &HandEvent) {
-        if let HandEvent::Push { leg, side, .. } = event
-            && !self.state.found.contains_key(leg)
-        {
-            self.remember(*side);
-            self.update_uplift();
-            self.state.found.insert(*leg, Arc::clone(&self.state.uplift));
-        }
-        let world = &mut self.state.world;
-        let applied = world
-            .plates
-            .apply(event, &world.map, world.time_yr, &self.params.mountain);
-        self.state.stale |= applied != Applied::Unchanged;
-        match event {
-            HandEvent::Tap { .. } if applied == Applied::Domes(0) => self.state.counts.dead_touches += 1,
-            HandEvent::Push { .. } | HandEvent::Tap { .. } => world.last_push_yr = world.time_yr,
-            HandEvent::PushEnd { leg } => self.judge(*leg),
-            HandEvent::Rest { .. } | HandEvent::Lift { .. } | HandEvent::Retract { .. } => {}
-        }
-    }
-
-    /// A finished push is a dead touch if the uplift it found is the uplift it leaves, and the land before its
-    /// fingers neither rises nor sinks (the same push again only goes on raising what rises).
-    fn judge(&mut self, leg: Leg) {
-        self.update_uplift();
-        let Some(found) = self.state.found.remove(&leg) else {
-            return;
-        };
-        let field = &self.state.uplift.field;
-        let most = |rates: &mut dyn Iterator<Item = f32>| f64::from(rates.fold(0.0, f32::max));
-        let change = most(
-            &mut field
-                .data
-                .iter()
-                .zip(&found.field.data)
-                .map(|(a, b)| (a - b).abs()),
-        );
-        let plates = self.state.world.plates.plates();
-        let tips: Vec<DVec2> = plates
-            .iter()
-            .filter(|plate| plate.leg == Some(leg))
-            .flat_map(|plate| plate.arrows().map(|(_, tip)| tip))
-            .collect();
-        let near = |p: DVec2| tips.iter().any(|tip| tip.distance(p) < ANSWER_REACH);
-        let grid = field.grid;
-        let before_fingers = (0..grid.len()).filter(|at| near(grid.centre(at % grid.cols, at / grid.cols)));
-        let moving = most(&mut before_fingers.map(|at| field.data[at].abs()));
-        if change.max(moving) < self.params.answer_m_per_yr {
-            self.state.counts.dead_touches += 1;
-        }
-    }
-
-    /// What moves the land now.
-    fn drive(&self) -> Drive {
-        let world = &self.state.world;
-        let doing = world
-            .plates
-            .plates()
-            .iter()
-            .map(|plate| (plate.id, plate.state(world.time_yr)));
-        let years = self.params.mountain.dome_years;
-        let rising = world
-            .plates
-            .domes()
-            .iter()
-            .filter(|dome| world.time_yr < dome.begun_yr + years);
-        (doing.collect(), rising.count())
-    }
-
-    /// Computes the uplift if plates have changed, a push is spent or a dome has risen.
-    fn update_uplift(&mut self) -> bool {
-        let drive = self.drive();
-        if !self.state.stale && drive == self.state.uplift.drive {
-            return false;
-        }
-        let state = &mut self.state;
-        state.stale = false;
-        let world = &state.world;
-        let (extent, params) = (world.map.extent(), &self.params.mountain);
-        self.tectonics
-            .compute_into(&world.plates, extent, world.time_yr, params, &mut self.field);
-        let field = &self.field;
-        let mut at_nodes: Vec<f64> = world
-            .tin
-            .positions()
-            .iter()
-            .map(|&p| field.uplift_at(p))
-            .collect();
-        for rate in at_nodes.iter_mut().filter(|rate| !rate.is_finite()) {
-            *rate = 0.0;
-            state.quarantine.uplift_nodes += 1;
-        }
-        if drive.0.iter().any(|(_, doing)| *doing == PlateState::Pushing) {
-            state.last_motion = Some(field.report);
-        }
-        // A fault stays on the map when its push is spent, as long as its plates stand.
-        let mut faults = field.faults.clone();
-        let stands = |pair: &Pair| {
-            let known = |id| drive.0.iter().any(|(plate, _)| *plate == id);
-            known(pair.first) && pair.second.is_none_or(known)
-        };
-        for old in &state.uplift.faults {
-            if stands(&old.pair) && !field.faults.iter().any(|new| new.pair == old.pair) {
-                faults.push(old.clone());
-            }
-        }
-        state.uplift = Arc::new(Uplift {
-            field: field.uplift.clone(),
-            at_nodes,
-            faults,
-            drive,
-        });
         true
     }
 

@@ -28,11 +28,11 @@ impl Sim {
             .collect()
     }
 
-    /// The faults of the last uplift that plates drove.
+    /// The faults that move, and those that have moved not long ago.
     pub fn fault_traces(&self) -> Vec<FaultTrace> {
         let faults = self.state.uplift.faults.iter();
         faults
-            .map(|fault| FaultTrace {
+            .map(|(fault, _)| FaultTrace {
                 points: fault.points.clone(),
                 range_on_left: true,
             })

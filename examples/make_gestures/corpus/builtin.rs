@@ -8,8 +8,8 @@ use super::show::{Finger, Push, Show};
 
 pub(super) const SCENES: [Scene; 1] = [("builtin_session", builtin_session)];
 
-/// A rift opens, a low range rises beyond it, and both hands raise the grand range last, so that it stands fresh when
-/// the session is over. All of it stays 12 km clear of the border.
+/// A rift opens, a low range rises beyond it, and both hands raise the grand range last, all within six seconds, so that
+/// nothing is worn down when the session is over. All of it stays 12 km clear of the border.
 fn builtin_session() -> Show {
     let mut show = Show::new(
         "a grand range, a lower one, and a lake",
@@ -21,21 +21,21 @@ fn builtin_session() -> Show {
     for (side, y) in [(-1.0, 512.0), (1.0, 500.0)] {
         let x = |apart: f64| 925.0 + side * apart;
         show.finger(Finger::new(vec![
+            pose(160.0, x(36.0), y),
             pose(320.0, x(36.0), y),
-            pose(480.0, x(36.0), y),
-            pose(2700.0, x(76.0), y),
-            pose(3300.0, x(76.0), y),
+            pose(1400.0, x(80.0), y),
+            pose(1500.0, x(80.0), y),
         ]));
     }
-    show.changes(DVec2::new(925.0, 506.0), 2700.0);
+    show.changes(DVec2::new(925.0, 506.0), 1400.0);
     let along = toward(140.0);
     let low = show.push(
         &three(along, 120.0),
         Push {
-            from_ms: 3800.0,
-            for_ms: 1900.0,
+            from_ms: 1800.0,
+            for_ms: 1200.0,
             at: DVec2::new(1010.0, 165.0),
-            by: along * 64.0,
+            by: along * 84.0,
             turn_deg: 0.0,
         },
     );
@@ -44,14 +44,14 @@ fn builtin_session() -> Show {
     // The range strikes 15° east of north, across the way of the hands.
     let across = toward(15.0);
     let middle = DVec2::new(440.0, 362.0);
-    show.rest(&five(-across, 184.0), middle + across * 182.0, 6300.0, 13_200.0);
+    show.rest(&five(-across, 184.0), middle + across * 182.0, 2900.0, 6000.0);
     let grand = show.push(
         &five(across, 184.0),
         Push {
-            from_ms: 7300.0,
-            for_ms: 4000.0,
-            at: middle - across * 300.0,
-            by: across * 108.0,
+            from_ms: 3400.0,
+            for_ms: 2200.0,
+            at: middle - across * 312.0,
+            by: across * 128.0,
             turn_deg: -4.0,
         },
     );

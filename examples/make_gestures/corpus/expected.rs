@@ -74,8 +74,8 @@ fn two_hands_push() -> Show {
         Push {
             from_ms: 900.0,
             for_ms: 2400.0,
-            at: DVec2::new(898.0, 363.0),
-            by: DVec2::new(-112.0, -4.0),
+            at: DVec2::new(916.0, 363.0),
+            by: DVec2::new(-130.0, -4.0),
             turn_deg: 5.0,
         },
     );

@@ -88,7 +88,8 @@ impl Axes {
             .find_map(|axes| axes.get(&code).and_then(&question))
     }
 
-    /// The touching surface; `options` where the recording does not tell.
+    /// The touching surface; `options` win over what the recording tells: headers
+    /// are absent or wrong on one device in eight.
     pub(super) fn plane(
         &self,
         options: &EvemuOptions,
@@ -97,9 +98,9 @@ impl Axes {
         let range = |code| self.ask(code, Axis::range);
         let told = range(ABS_MT_POSITION_X).zip(range(ABS_MT_POSITION_Y));
         let given = options.range.map(given_range).transpose()?;
-        let ((x0, x1), (y0, y1)) = told.or(given).ok_or(EvemuFault::NoRange)?;
+        let ((x0, x1), (y0, y1)) = given.or(told).ok_or(EvemuFault::NoRange)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
-            warnings.push("--range not used: the recording has its own".to_owned());
+            warnings.push("--range used in place of the recording's own".to_owned());
         }
         let units = DVec2::new(x1 - x0, y1 - y0);
         let resolution = |code| self.ask(code, |axis| axis.resolution.filter(|r| *r > 0));
@@ -108,9 +109,9 @@ impl Axes {
             .map(|(x, y)| units / DVec2::new(x.into(), y.into()))
             .filter(|size| is_size(*size));
         let given = options.size_mm.map(given_size).transpose()?;
-        let size_mm = told.or(given).ok_or(EvemuFault::NoSize)?;
+        let size_mm = given.or(told).ok_or(EvemuFault::NoSize)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
-            warnings.push("--size-mm not used: the recording has its own".to_owned());
+            warnings.push("--size-mm used in place of the recording's own".to_owned());
         }
         Ok(Plane {
             size_mm,

@@ -37,7 +37,7 @@ pub const MAX_LINES: usize = 4_000_000;
 /// Characters of a device's name that the title keeps.
 const TITLE_CHARS: usize = 120;
 
-/// What a recording may fail to say about itself.
+/// What a recording may fail to say about itself, or say wrongly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EvemuOptions {
     /// Device units at the left, right, upper and lower edge (`x0, x1, y0, y1`).
