@@ -190,7 +190,10 @@ fn plates_pulled_apart_sink_a_rift_and_nothing_sinks_behind_one_that_pushes() {
         &params,
     );
     let middle = apart.uplift_at(DVec2::new(90.0, 50.0) * KM);
-    assert!((-params.sink_limit..-0.5 * params.sink_limit).contains(&middle), "{middle}");
+    assert!(
+        (-params.sink_limit..-0.5 * params.sink_limit).contains(&middle),
+        "{middle}"
+    );
     assert!(field(&two_hands(), &params).report.min_uplift == 0.0);
     assert!(
         field(&[hand([100.0, 50.0], [-16.0, 0.0])], &params)

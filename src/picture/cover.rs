@@ -6,6 +6,15 @@ use super::colour::{Ramp, linear, smoothstep};
 use super::light::Spot;
 use super::noise;
 
+/// Height of the upper edge of the forest, metres: that of the Southern Alps of New Zealand, a young range between two
+/// plates as those of the table are (Wardle 2008, "New Zealand forest to alpine
+/// transitions in global context", Arct. Antarct. Alp. Res. 40).
+const TREE_LINE: f32 = 1300.0;
+
+/// Height above which snow lies all year, metres: there it is 1,600 m in the wet west and 2,200 m in the dry east
+/// (Chinn 1995, "Glacier fluctuations in the Southern Alps of New Zealand", Arctic and Alpine Research 27).
+const SNOW_LINE: f32 = 2050.0;
+
 /// The colours of the map, in linear light. Greens are never loud, rock is warm, shadows come from the light.
 pub(super) struct Palette {
     lowland: f32,
@@ -38,18 +47,18 @@ impl Palette {
                 (180.0, 0xe5_e1c0),
                 (400.0, 0xe2_deb9),
                 (800.0, 0xda_d9b0),
-                (1500.0, 0xcd_cfa3),
-                (2100.0, 0xc8_c6a4),
-                (2700.0, 0xcc_c5b2),
-                (3600.0, 0xd8_d3cb),
+                (1200.0, 0xcd_cfa3),
+                (1700.0, 0xc8_c6a4),
+                (2200.0, 0xcc_c5b2),
+                (3000.0, 0xd8_d3cb),
             ]),
             wood: Ramp::new(&[
                 (-200.0, 0xab_ba99),
                 (400.0, 0x9b_ac88),
-                (1200.0, 0x88_9a79),
-                (1900.0, 0x80_9175),
+                (900.0, 0x88_9a79),
+                (1400.0, 0x80_9175),
             ]),
-            rock: Ramp::new(&[(500.0, 0xb4_a794), (1800.0, 0xa8_a29b), (3200.0, 0xa9_a6a6)]),
+            rock: Ramp::new(&[(500.0, 0xb4_a794), (1400.0, 0xa8_a29b), (2600.0, 0xa9_a6a6)]),
             scree: linear(0xc8_bfae),
             snow: linear(0xef_f1f2),
             water_meadow: linear(0xb4_c69c),
@@ -93,7 +102,7 @@ impl Palette {
 
         // Woods: on slopes too steep to plough and not too steep to root, in hollows, on shaded sides; in patches on
         // the plain, along its rivers.
-        let tree_line = 1850.0 - 130.0 * spot.northness + 190.0 * border;
+        let tree_line = TREE_LINE - 130.0 * spot.northness + 190.0 * border;
         let below = 1.0 - smoothstep(tree_line - 260.0, tree_line + 60.0, height);
         let rooted = smoothstep(0.07, 0.26, slope) * (1.0 - smoothstep(0.85, 1.25, slope));
         let patch = smoothstep(
@@ -110,7 +119,7 @@ impl Palette {
         colour = colour.lerp(self.wood.at(height), 0.88 * wood);
 
         // Scree below, rock where nothing holds.
-        let alpine = smoothstep(1500.0, 2300.0, height + 260.0 * border);
+        let alpine = smoothstep(TREE_LINE - 200.0, TREE_LINE + 500.0, height + 260.0 * border);
         let scree = alpine * smoothstep(0.42, 0.66, slope + 0.12 * fine) * 0.6;
         colour = colour.lerp(self.scree, scree);
         let bare = smoothstep(
@@ -122,7 +131,7 @@ impl Palette {
         colour = colour.lerp(self.rock.at(height) * grain, bare * (0.55 + 0.45 * alpine));
 
         // Snow: high, in the shade lower, in hollows lower, not on faces it slides from.
-        let snow_line = 2900.0 - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
+        let snow_line = SNOW_LINE - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
         let lies = smoothstep(snow_line - 90.0, snow_line + 190.0, height + 120.0 * fine);
         let slides = smoothstep(0.80, 1.15, slope + 0.08 * fine);
         colour.lerp(self.snow, lies * (1.0 - 0.85 * slides))
@@ -130,7 +139,8 @@ impl Palette {
 
     /// Colour of standing water of some depth, metres.
     pub(super) fn lake(&self, depth: f32) -> Vec3 {
-        self.shallow.lerp(self.deep, 1.0 - (-depth.max(0.0) / 60.0).exp())
+        self.shallow
+            .lerp(self.deep, 1.0 - (-depth.max(0.0) / 260.0).exp())
     }
 
     /// The colour seen through the air above low land: `height_share` 0 in the plains, 1 at the summits.

@@ -12,7 +12,7 @@ use super::{MapFrame, MapStyle, cover, opaque};
 use crate::surface::Surface;
 
 /// Heights that count as summits at least and at most, metres: hills are not painted as if they were the Alps.
-const SUMMITS: (f32, f32) = (1400.0, 4200.0);
+const SUMMITS: (f32, f32) = (1200.0, 3600.0);
 
 /// Heights on the pixels. The outermost nodes of a mesh are held by its border condition and make a rim around the
 /// land: the land just inside goes on to the edge in their place.

@@ -40,7 +40,7 @@ impl Lakes {
 /// (Leopold & Maddock 1953) would make brooks vanish beside streams, so maps flatten it.
 fn drawn_width(drainage: f64) -> f64 {
     let km2 = drainage / (KM * KM);
-    (0.55 * (km2.max(0.1) / 20.0).powf(0.34)).min(5.0)
+    (0.5 * (km2.max(0.1) / 20.0).powf(0.30)).min(1.9)
 }
 
 /// Distance over which a river grows to its width below its source, in pixels of a map 1000 pixels high.
@@ -56,7 +56,7 @@ pub(super) struct Course {
 const WANDERING: f32 = 0.02;
 
 /// How far wandering takes a river from its line, in mesh edges: below what the data knows.
-const WANDER_REACH: f64 = 0.42;
+const WANDER_REACH: f64 = 0.2;
 
 /// The surface's rivers on the map. On flat land they wander off the straight mesh edges; the way they do depends on
 /// the place alone, so that tributaries still meet their main stem.
