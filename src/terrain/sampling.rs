@@ -186,41 +186,44 @@ impl DartBoard {
         self.xs[cell as usize] == EMPTY
     }
 
-    /// South-west corner of an open square of the given side, in cells.
-    fn corner(&self, open: Open, side: f32) -> (f32, f32) {
+    /// South-west corner of the cell of an open square, in cells.
+    fn corner(&self, open: Open) -> (f32, f32) {
         let (row, column) = (open.cell as usize / self.stride, open.cell as usize % self.stride);
-        (
-            (column - PAD) as f32 + f32::from(open.sub_x) * side,
-            (row - PAD) as f32 + f32::from(open.sub_y) * side,
-        )
+        ((column - PAD) as f32, (row - PAD) as f32)
     }
 
-    /// True if a disc covers the whole square of the given half side around (x, y): the point itself where it is 0.
-    fn is_covered(&self, cell: u32, x: f32, y: f32, half: f32) -> bool {
-        // A disc that covers a square of half a cell or more lies one cell away at most, others two; eight lanes fill
-        // whole registers and cost less than five would. The nearer rows cover more often.
-        let reached =
-            |row: usize, reach: usize| cell as usize + row * self.stride - reach * (self.stride + 1);
-        if half >= 0.25 {
-            [1, 0, 2]
-                .into_iter()
-                .any(|row| self.row_covers::<4>(reached(row, 1), x, y, half))
-        } else {
-            [2, 1, 3, 0, 4]
-                .into_iter()
-                .any(|row| self.row_covers::<LANES>(reached(row, 2), x, y, half))
-        }
+    /// True if a disc covers the point (x, y), which lies in the upper or the lower half of its cell.
+    fn is_hit(&self, cell: u32, upper: bool, x: f32, y: f32) -> bool {
+        self.any_near(cell, upper, |sample_x, sample_y| {
+            let (dx, dy) = (sample_x - x, sample_y - y);
+            dx * dx + dy * dy
+        })
     }
 
-    /// True if one of `N` discs from the grid cell `first` on covers the square.
-    fn row_covers<const N: usize>(&self, first: usize, x: f32, y: f32, half: f32) -> bool {
-        let (xs, ys) = (&self.xs[first..first + N], &self.ys[first..first + N]);
-        let mut covered = false;
-        for lane in 0..N {
-            let (dx, dy) = ((xs[lane] - x).abs() + half, (ys[lane] - y).abs() + half);
-            covered |= dx * dx + dy * dy < RADIUS_SQUARED;
+    /// True if one disc covers the whole square of the given half side around (x, y), in one half of its cell.
+    fn is_covered(&self, cell: u32, upper: bool, x: f32, y: f32, half: f32) -> bool {
+        self.any_near(cell, upper, |sample_x, sample_y| {
+            let (dx, dy) = ((sample_x - x).abs() + half, (sample_y - y).abs() + half);
+            dx * dx + dy * dy
+        })
+    }
+
+    /// True if a sample near one half of a cell has a squared distance below that of a radius.
+    fn any_near(&self, cell: u32, upper: bool, squared_distance: impl Fn(f32, f32) -> f32) -> bool {
+        // Two cells to each side; eight lanes fill whole registers and cost less than five would. The second row beyond
+        // the other half is farther than a radius. No row ends the search: to the processor, which of them has the
+        // disc is a coin toss, and dearer than all the rows.
+        let first_row = usize::from(upper);
+        let mut near = [f32::INFINITY; LANES];
+        for row in first_row..first_row + 4 {
+            let first = cell as usize + row * self.stride - 2 * (self.stride + 1);
+            let (xs, ys) = (&self.xs[first..first + LANES], &self.ys[first..first + LANES]);
+            for lane in 0..LANES {
+                let squared = squared_distance(xs[lane], ys[lane]);
+                near[lane] = if squared < near[lane] { squared } else { near[lane] };
+            }
         }
-        covered
+        near.iter().any(|&squared| squared < RADIUS_SQUARED)
     }
 
     /// Throws until there are `target` positions in all, or no room is left.
@@ -273,10 +276,11 @@ impl DartBoard {
             if !self.is_empty(square.cell) {
                 continue;
             }
-            let (west, south) = self.corner(square, side);
-            let x = west + (word >> 40) as f32 * step;
-            let y = south + (word >> 16 & 0xFF_FFFF) as f32 * step;
-            if self.is_covered(square.cell, x, y, 0.0) {
+            let (west, south) = self.corner(square);
+            let east = f32::from(square.sub_x) * side + (word >> 40) as f32 * step;
+            let north = f32::from(square.sub_y) * side + (word >> 16 & 0xFF_FFFF) as f32 * step;
+            let (x, y) = (west + east, south + north);
+            if self.is_hit(square.cell, north >= 0.5, x, y) {
                 continue;
             }
             let p = DVec2::new(f64::from(x), f64::from(y)) * self.cell;
@@ -293,17 +297,26 @@ impl DartBoard {
     fn split(&self, open: &[Open], side: f32) -> Vec<Open> {
         let mut quarters = Vec::with_capacity(open.len());
         for square in open.iter().filter(|square| self.is_empty(square.cell)) {
-            let (west, south) = self.corner(*square, 2.0 * side);
+            let (west, south) = self.corner(*square);
             let half = 0.5 * side;
             // Whole cells are rarely covered by one disc, smaller squares are more often than not.
             let covered = if side >= 0.5 {
                 self.covered_quarters(square.cell, west + side, south + side, half)
-            } else if self.is_covered(square.cell, west + side, south + side, side) {
-                continue;
             } else {
+                let upper = f32::from(square.sub_y) * 2.0 * side >= 0.5;
+                let (x, y) = (
+                    west + f32::from(2 * square.sub_x + 1) * side,
+                    south + f32::from(2 * square.sub_y + 1) * side,
+                );
+                if self.is_covered(square.cell, upper, x, y, side) {
+                    continue;
+                }
                 QUARTERS.map(|(sub_x, sub_y)| {
-                    let (x, y) = (f32::from(sub_x) * side, f32::from(sub_y) * side);
-                    self.is_covered(square.cell, west + x + half, south + y + half, half)
+                    let (x, y) = (
+                        x + (f32::from(sub_x) - 0.5) * side,
+                        y + (f32::from(sub_y) - 0.5) * side,
+                    );
+                    self.is_covered(square.cell, upper, x, y, half)
                 })
             };
             for ((sub_x, sub_y), covered) in QUARTERS.into_iter().zip(covered) {

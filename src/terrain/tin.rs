@@ -1,7 +1,8 @@
 //! The triangulated irregular network (TIN): nodes, their Delaunay neighbours, and their Voronoi cells.
 
 use glam::DVec2;
-use spade::{DelaunayTriangulation, HasPosition, InsertionError, Point2, Triangulation};
+use spade::handles::FixedVertexHandle;
+use spade::{DelaunayTriangulation, InsertionError, Point2, Triangulation};
 
 use super::sampling::{hilbert_order, poisson_disc};
 use super::voronoi::cell_areas;
@@ -135,19 +136,8 @@ pub struct Tin {
     border: Vec<bool>,
 }
 
-/// A vertex of the triangulation under construction, with its node.
-#[derive(Clone, Copy)]
-struct Vertex {
-    position: Point2<f64>,
-    node: u32,
-}
-
-impl HasPosition for Vertex {
-    type Scalar = f64;
-    fn position(&self) -> Point2<f64> {
-        self.position
-    }
-}
+/// The triangulation under construction. Vertices are numbered as they are inserted.
+type Triangles = DelaunayTriangulation<Point2<f64>>;
 
 impl Tin {
     /// A TIN of exactly `nodes` Poisson-disc samples of `extent`, a pure function of its arguments.
@@ -230,14 +220,11 @@ impl Tin {
     ) -> Result<Self, TinError> {
         let n = positions.len();
         // Three edges and two triangles per node.
-        let mut delaunay = DelaunayTriangulation::<Vertex>::with_capacity(n, 3 * n, 2 * n);
+        let mut delaunay = Triangles::with_capacity(n, 3 * n, 2 * n);
         let mut hint = None;
         for (inserted, &node) in along_curve.iter().enumerate() {
             let p = positions[node as usize];
-            let vertex = Vertex {
-                position: Point2::new(p.x, p.y),
-                node,
-            };
+            let vertex = Point2::new(p.x, p.y);
             let handle = match hint {
                 None => delaunay.insert(vertex),
                 Some(before) => delaunay.insert_with_hint(vertex, before),
@@ -275,11 +262,7 @@ impl Tin {
     }
 
     /// Takes links and triangles from the triangulation; returns which nodes are on its hull.
-    fn read_links(
-        &mut self,
-        delaunay: &DelaunayTriangulation<Vertex>,
-        along_curve: &[u32],
-    ) -> Result<Vec<bool>, TinError> {
+    fn read_links(&mut self, delaunay: &Triangles, along_curve: &[u32]) -> Result<Vec<bool>, TinError> {
         let n = self.positions.len();
         let mut hull = Vec::with_capacity(n);
         let mut vertex_of = vec![0_u32; n];
@@ -291,14 +274,10 @@ impl Tin {
         let mut ring: Vec<(u32, bool)> = Vec::with_capacity(16);
         self.first_link.push(0);
         for node in 0..n as u32 {
-            let vertex = spade::handles::FixedVertexHandle::from_index(vertex_of[node as usize] as usize);
+            let vertex = FixedVertexHandle::from_index(vertex_of[node as usize] as usize);
             ring.clear();
-            ring.extend(
-                delaunay
-                    .vertex(vertex)
-                    .out_edges()
-                    .map(|edge| (edge.to().data().node, !edge.face().is_outer())),
-            );
+            let ways_out = delaunay.vertex(vertex).out_edges();
+            ring.extend(ways_out.map(|edge| (along_curve[edge.to().index()], !edge.is_outer_edge())));
             let gap = ring.iter().position(|&(_, triangle)| !triangle);
             let start = gap.map_or_else(
                 || (0..ring.len()).min_by_key(|&k| ring[k].0).unwrap_or(0),
