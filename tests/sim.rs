@@ -1,9 +1,12 @@
 //! The session as a whole: answers, undo, roll-back, quarantine, determinism.
 
+use std::sync::Arc;
+
 use glam::DVec2;
-use orogen::gesture::command::{Action, Command};
+use orogen::gesture::command::{Action, Arrow, Command};
 use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
 use orogen::sim::{Sim, SimParams, TICK_US, World};
+use orogen::terrain::Tin;
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
 const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
@@ -151,6 +154,86 @@ fn a_contact_that_turns_out_to_be_a_sleeve_leaves_no_trace() {
     assert_eq!(touched.world().plates.plates().len(), 0);
     assert_eq!(difference(&touched, &untouched), 0.0, "to the bit");
     assert_eq!(touched.ticks(), untouched.ticks());
+}
+
+#[test]
+fn a_short_stroke_does_not_undo_a_grand_push() {
+    let (mut alone, mut disturbed) = (sim(3000), sim(3000));
+    let (from, by) = (DVec2::new(500.0, 340.0), DVec2::new(120.0, 0.0));
+    let push = drag(1, from, by, 0, 600);
+    let mut both = push.clone();
+    // A second later somebody's finger slips back over the place where the plate now stands.
+    both.extend(drag(2, from + by, DVec2::new(-8.0, 3.0), 1600, 160));
+    play(&mut alone, push, 6000);
+    play(&mut disturbed, both, 6000);
+    assert_eq!(disturbed.contact_stats().pushes, 2);
+    let highest = |sim: &Sim| sim.world().z.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (alone, disturbed) = (highest(&alone), highest(&disturbed));
+    assert!(alone > 500.0, "the grand push raises a range: {alone} m");
+    assert!(disturbed > 0.9 * alone, "and goes on: {disturbed} m of {alone} m");
+}
+
+#[test]
+fn commands_edit_standing_plates() {
+    let mut sim = sim(1000);
+    let at = DVec2::new(600.0, 340.0);
+    play(&mut sim, drag(1, at, DVec2::new(80.0, 0.0), 0, 400), 1000);
+    let command = |t_us: u64, action: Action| InputFrame {
+        t_us,
+        events: Vec::new(),
+        commands: vec![Command::new(action)],
+    };
+    let before = sim.world().plates.plates()[0].motion;
+    let tip = at + DVec2::new(80.0, 0.0);
+    let arrow = Arrow {
+        from: tip,
+        to: tip + DVec2::new(0.0, 40.0),
+    };
+    play(&mut sim, vec![command(1_100_000, Action::EditArrow(arrow))], 1300);
+    let after = sim.world().plates.plates()[0].motion;
+    assert!(
+        after.translation.y < before.translation.y - 1000.0,
+        "down on the table is south"
+    );
+    play(&mut sim, vec![command(1_400_000, Action::Speed(0.0))], 1500);
+    let stopped = sim.world().time_yr;
+    play(&mut sim, vec![command(1_600_000, Action::Remove { at })], 2000);
+    assert_eq!(sim.world().time_yr, stopped, "speed 0 stops the clock");
+    assert!(sim.world().plates.plates().is_empty());
+    play(&mut sim, vec![command(2_100_000, Action::StartOver)], 2200);
+    assert_eq!(sim.world().time_yr, 0.0);
+    play(&mut sim, vec![command(2_300_000, Action::Earth)], 2400);
+    assert_eq!(
+        sim.counts().idle_commands,
+        1,
+        "the globe's words mean nothing here"
+    );
+}
+
+#[test]
+fn a_world_moves_to_other_nodes() {
+    let mut sim = sim(2000);
+    play(
+        &mut sim,
+        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
+        3000,
+    );
+    let world = sim.world();
+    let finer = Tin::poisson(world.map.extent(), 8000, 3).expect("a TIN");
+    let moved = world.resampled(Arc::new(finer));
+    let mean = |world: &World| {
+        let areas = world.tin.areas();
+        world.z.iter().zip(areas).map(|(z, a)| z * a).sum::<f64>() / areas.iter().sum::<f64>()
+    };
+    assert_eq!(moved.z.len(), 8000);
+    assert!(
+        (mean(world) - mean(&moved)).abs() < 3.0,
+        "{} m and {} m",
+        mean(world),
+        mean(&moved)
+    );
+    assert_eq!(moved.strata.displaced(0).map(<[f64]>::len), Some(8000));
+    assert_eq!(moved.plates, world.plates);
 }
 
 #[test]
