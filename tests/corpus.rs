@@ -161,7 +161,7 @@ type Row = (&'static str, u64, u64, usize, f64, f64);
 const GOLDEN: &[Row] = &[
     ("builtin_session", 4, 0, 5, 2.6, -1.2),
     ("cancel", 1, 0, 1, 1.3, -0.1),
-    ("drumming", 0, 16, 0, 0.1, -0.1),
+    ("drumming", 0, 16, 0, 0.7, -0.1),
     ("finished_range_eroding", 1, 0, 2, 0.1, -0.1),
     ("flicker", 1, 0, 1, 1.5, -0.1),
     ("four_visitors", 4, 0, 4, 2.4, -0.1),
@@ -178,7 +178,7 @@ const GOLDEN: &[Row] = &[
     ("pulling_towards_oneself", 1, 0, 1, 1.8, -0.1),
     ("rubbing", 7, 0, 1, 1.5, -0.1),
     ("same_push_again", 2, 0, 1, 1.3, -0.1),
-    ("slapping", 0, 2, 0, 0.1, -0.1),
+    ("slapping", 0, 2, 0, 0.2, -0.1),
     ("slow_and_fast", 2, 0, 2, 1.0, -0.1),
     ("stuck_contact", 2, 0, 3, 1.5, -0.6),
     ("ten_fingers", 2, 0, 2, 1.0, -0.1),

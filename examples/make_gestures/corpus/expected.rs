@@ -243,9 +243,9 @@ fn ten_fingers() -> Show {
 fn finished_range_eroding() -> Show {
     let mut show = Show::new(
         "a finished range wears down",
-        "Ten million years after the push the range is lower, its valleys are wide, and rivers cross it.",
+        "Three million years after the push is spent the range is low, its valleys are wide, and rivers cross it.",
     );
-    show.world(15e6, 20_000);
+    show.world(8e6, 60_000);
     show.rest(&five(RIGHT, 160.0), DVec2::new(400.0, 350.0), 160.0, 2900.0);
     let pushed = show.push(
         &three(LEFT, 130.0),

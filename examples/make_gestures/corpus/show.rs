@@ -27,8 +27,8 @@ const TREMOR_KEEP: f64 = 0.8;
 /// A touchscreen reports a contact that has moved by this, mm; less is filtered away.
 const HYSTERESIS_MM: f64 = 0.35;
 
-/// Terrain nodes where a scene does not ask for others: enough to see a range, few enough to play all files.
-const NODES: u64 = 20_000;
+/// Terrain nodes where a scene does not ask for others: what looks like land on a table.
+const NODES: u64 = 60_000;
 
 /// One contact of a show.
 pub(super) struct Finger {

@@ -26,6 +26,7 @@ const RIGHT: DVec2 = DVec2::new(1.0, 0.0);
 
 fn drumming() -> Show {
     let mut show = Show::new("drumming fingers", "Small domes stand where the fingers drum.");
+    show.world(4e5, 60_000);
     let middle = DVec2::new(600.0, 340.0);
     let fingers: Vec<DVec2> = five(UP, 170.0).into_iter().skip(1).map(|f| middle + f).collect();
     // From the little finger to the index finger, again and again.
@@ -64,6 +65,7 @@ fn slapping() -> Show {
         "slapping the table",
         "Each slap raises a dome under each finger, and none under the ball of the hand.",
     );
+    show.world(4e5, 60_000);
     for (i, at) in [(0.0, DVec2::new(430.0, 350.0)), (1.0, DVec2::new(780.0, 330.0))] {
         let from_ms = 160.0 + 900.0 * i;
         for offset in five(UP, 165.0) {
