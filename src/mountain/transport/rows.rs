@@ -1,6 +1,7 @@
 //! One row of corners or cells: the inner loops of the fast stage.
 
 use glam::DVec2;
+use multiversion::multiversion;
 
 use super::TransportProblem;
 use crate::mountain::power::{exp2, log2};
@@ -100,7 +101,8 @@ impl Kernel {
                     if from < to {
                         let x = self.north_west.x + from as f64 * self.cell;
                         let cut = from - first..to - first;
-                        caster.cast(
+                        cast(
+                            caster,
                             feature,
                             DVec2::new(x, y),
                             self.cell as f32,
@@ -185,62 +187,63 @@ impl Caster {
             first.0 = 0;
         }
     }
+}
 
-    /// Adds this body's share for corners `from`, `from + cell`, … eastwards.
-    fn cast(&self, feature: Feature, from: DVec2, cell: f32, exponent: f32, sums: &mut Sums<'_>) {
-        let here = from - self.pivot;
-        let (x0, y) = (here.x as f32, here.y as f32);
-        let [xx, xy, yx, yy] = self.spin;
-        let [lift_x, lift_y] = self.lift;
-        let radius = self.radius;
-        let power = |d: f32| exp2(-exponent * log2(d * (1.0 / UNIT) as f32));
-        let columns = sums
-            .weights
-            .iter_mut()
-            .zip(sums.east.iter_mut())
-            .zip(sums.north.iter_mut())
-            .enumerate();
-        match feature {
-            Feature::Inside => {
-                let w = power(RIM);
-                for (k, ((weight, east), north)) in columns {
-                    let x = x0 + k as i32 as f32 * cell;
-                    *weight += w;
-                    *east += w * (xx * x + xy * y + lift_x);
-                    *north += w * (yx * x + yy * y + lift_y);
-                }
+/// Adds a body's share for corners `from`, `from + cell`, … eastwards.
+#[multiversion(targets("x86_64+avx2"))]
+fn cast(caster: &Caster, feature: Feature, from: DVec2, cell: f32, exponent: f32, sums: &mut Sums<'_>) {
+    let here = from - caster.pivot;
+    let (x0, y) = (here.x as f32, here.y as f32);
+    let [xx, xy, yx, yy] = caster.spin;
+    let [lift_x, lift_y] = caster.lift;
+    let radius = caster.radius;
+    let power = |d: f32| exp2(-exponent * log2(d * (1.0 / UNIT) as f32));
+    let columns = sums
+        .weights
+        .iter_mut()
+        .zip(sums.east.iter_mut())
+        .zip(sums.north.iter_mut())
+        .enumerate();
+    match feature {
+        Feature::Inside => {
+            let w = power(RIM);
+            for (k, ((weight, east), north)) in columns {
+                let x = x0 + k as i32 as f32 * cell;
+                *weight += w;
+                *east += w * (xx * x + xy * y + lift_x);
+                *north += w * (yx * x + yy * y + lift_y);
             }
-            Feature::Corner(corner) => {
-                let corner = corner - self.pivot;
-                let (cx, cy) = (corner.x as f32, corner.y as f32);
-                let dy = y - cy;
-                for (k, ((weight, east), north)) in columns {
-                    let dx = x0 + k as i32 as f32 * cell - cx;
-                    let core_distance = (dx * dx + dy * dy).sqrt();
-                    let d = (core_distance - radius).max(RIM);
-                    let w = power(d);
-                    // Projection: from the corner towards the point, no farther than the radius.
-                    let part = radius.min(core_distance) / core_distance.max(RIM);
-                    let (px, py) = (cx + dx * part, cy + dy * part);
-                    *weight += w;
-                    *east += w * (xx * px + xy * py + lift_x);
-                    *north += w * (yx * px + yy * py + lift_y);
-                }
+        }
+        Feature::Corner(corner) => {
+            let corner = corner - caster.pivot;
+            let (cx, cy) = (corner.x as f32, corner.y as f32);
+            let dy = y - cy;
+            for (k, ((weight, east), north)) in columns {
+                let dx = x0 + k as i32 as f32 * cell - cx;
+                let core_distance = (dx * dx + dy * dy).sqrt();
+                let d = (core_distance - radius).max(RIM);
+                let w = power(d);
+                // Projection: from the corner towards the point, no farther than the radius.
+                let part = radius.min(core_distance) / core_distance.max(RIM);
+                let (px, py) = (cx + dx * part, cy + dy * part);
+                *weight += w;
+                *east += w * (xx * px + xy * py + lift_x);
+                *north += w * (yx * px + yy * py + lift_y);
             }
-            Feature::Edge(base, normal) => {
-                let base = base - self.pivot;
-                let (nx, ny) = (normal.x as f32, normal.y as f32);
-                let offset = ((here - base).dot(normal)) as f32;
-                for (k, ((weight, east), north)) in columns {
-                    let step = k as i32 as f32 * cell;
-                    let beyond = offset + step * nx - radius;
-                    let w = power(beyond.max(RIM));
-                    let back = beyond.max(0.0);
-                    let (px, py) = (x0 + step - back * nx, y - back * ny);
-                    *weight += w;
-                    *east += w * (xx * px + xy * py + lift_x);
-                    *north += w * (yx * px + yy * py + lift_y);
-                }
+        }
+        Feature::Edge(base, normal) => {
+            let base = base - caster.pivot;
+            let (nx, ny) = (normal.x as f32, normal.y as f32);
+            let offset = ((here - base).dot(normal)) as f32;
+            for (k, ((weight, east), north)) in columns {
+                let step = k as i32 as f32 * cell;
+                let beyond = offset + step * nx - radius;
+                let w = power(beyond.max(RIM));
+                let back = beyond.max(0.0);
+                let (px, py) = (x0 + step - back * nx, y - back * ny);
+                *weight += w;
+                *east += w * (xx * px + xy * py + lift_x);
+                *north += w * (yx * px + yy * py + lift_y);
             }
         }
     }
@@ -276,6 +279,7 @@ impl QuadSums {
 }
 
 /// `q` of a row of cells from two rows of corners (the northern one first).
+#[multiversion(targets("x86_64+avx2"))]
 pub(super) fn quads(east: &[f32], north: &[f32], cell: f32, q: &mut [f32]) -> QuadSums {
     const LANES: usize = 8;
     let n = q.len();
