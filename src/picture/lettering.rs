@@ -71,7 +71,15 @@ fn letter(sheet: &mut Pixmap, font: &FontRef<'_>, surface: &Surface, style: &Map
     let baseline = bottom + 0.5 * foot + 6.0 * scale;
     let mut pen = left;
     if !style.title.is_empty() {
-        pen = write(sheet, font, &style.title, 25.0 * scale, pen, baseline, 0.95) + 20.0 * scale;
+        // A title begins with a capital, however its file writes it.
+        let mut letters = style.title.chars();
+        let title: String = letters
+            .next()
+            .into_iter()
+            .flat_map(char::to_uppercase)
+            .chain(letters)
+            .collect();
+        pen = write(sheet, font, &title, 25.0 * scale, pen, baseline, 0.95) + 20.0 * scale;
     }
     let scale_left = scale_bar(sheet, font, frame, right, baseline);
     let facts = facts(surface, style);

@@ -26,8 +26,8 @@ pub(super) struct Uplift {
     pub(super) field: Field,
     /// m/yr at the nodes.
     pub(super) at_nodes: Vec<f64>,
-    /// Faults, and when each moved last, years.
-    pub(super) faults: Vec<(FaultTrace, f64)>,
+    /// Faults, and when each stopped, years; `None` while it moves.
+    pub(super) faults: Vec<(FaultTrace, Option<f64>)>,
     /// What it was computed for.
     drive: Drive,
 }
@@ -176,12 +176,13 @@ impl Sim {
         }
         // A fault stays on the map for a while when its push is spent.
         let now_yr = world.time_yr;
-        let mut faults: Vec<(FaultTrace, f64)> =
-            field.faults.iter().map(|fault| (fault.clone(), now_yr)).collect();
-        for (old, moved_yr) in &state.uplift.faults {
+        let mut faults: Vec<(FaultTrace, Option<f64>)> =
+            field.faults.iter().map(|fault| (fault.clone(), None)).collect();
+        for (old, stopped_yr) in &state.uplift.faults {
             let moves = field.faults.iter().any(|new| new.pair == old.pair);
-            if !moves && now_yr - moved_yr <= FAULT_YEARS {
-                faults.push((old.clone(), *moved_yr));
+            let stopped_yr = stopped_yr.unwrap_or(now_yr);
+            if !moves && now_yr - stopped_yr <= FAULT_YEARS {
+                faults.push((old.clone(), Some(stopped_yr)));
             }
         }
         state.uplift = Arc::new(Uplift {
