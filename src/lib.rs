@@ -33,7 +33,7 @@
 //!
 //! # Where to step in
 //!
-//! * A stage on the graphics card implements [`mountain::TransportStage`], whose CPU version is the truth.
+//! * A stage on the graphics card implements [`mountain::transport::TransportStage`], whose CPU version is the truth.
 //! * A device hands its contacts to [`sim::Sim::feed`] as [`gesture::contact::InputFrame`]s, as a gesture file does.
 //! * Another solver of the land works on [`terrain::Tin`] and [`terrain::Forcing`].
 

@@ -334,3 +334,28 @@ fn a_world_rests_five_million_years_after_its_last_push() {
     sim.tick();
     assert_eq!(sim.world().time_yr, resting);
 }
+
+#[test]
+fn a_stopped_clock_does_not_run_on() {
+    for stop in [Action::Pause, Action::Speed(0.0)] {
+        let mut sim = sim(300);
+        play(
+            &mut sim,
+            drag(1, DVec2::new(600.0, 340.0), DVec2::new(60.0, 0.0), 0, 400),
+            600,
+        );
+        let commands = vec![Command::new(stop)];
+        play(
+            &mut sim,
+            vec![InputFrame {
+                t_us: 700_000,
+                events: Vec::new(),
+                commands,
+            }],
+            800,
+        );
+        let stopped = sim.world().time_yr;
+        sim.run_on(|_, _| true);
+        assert_eq!(sim.world().time_yr, stopped);
+    }
+}

@@ -75,7 +75,7 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
         if file.header.mode != Mode::Mountain {
             let path = path.display();
             return Err(Failure::input(format!(
-                "{path}: line 1: field mode: this version plays \"mountain\""
+                "{path}:1: mode: expected \"mountain\", this version plays no other"
             )));
         }
         sessions.push((stem, file));

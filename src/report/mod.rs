@@ -230,7 +230,8 @@ impl TerrainFacts {
         let km2 = KM * KM;
         let lakes = flow.lakes();
         let wet = (0..z.len()).filter(|&i| lakes.level(NodeId::new(i), z[i]) > z[i]);
-        let lake_area = wet.map(|i| areas[i]).sum::<f64>();
+        // The sum of nothing is −0.
+        let lake_area = wet.map(|i| areas[i]).sum::<f64>() + 0.0;
         Self {
             nodes: tin.len(),
             years: 0.0,

@@ -210,14 +210,15 @@ impl Sim {
         self.play_tick(&frames)
     }
 
-    /// Takes up to `limit` erosion steps without any input, until the world rests, and calls `progress` after each
-    /// with the model time left, years. `progress` returns false to stop.
+    /// Lets the world run on without input until it rests: one erosion step after the other, whatever the pace. A
+    /// clock that was stopped stays so. Calls `progress` after each step with the model time left, years; false stops.
     pub fn run_on(&mut self, mut progress: impl FnMut(&Self, f64) -> bool) {
-        while self.runs() && !self.state.paused {
-            let mut report = self.tick();
-            while report.erosion_steps == 0 && self.runs() {
-                report = self.tick();
-            }
+        if self.state.paused || self.state.pace_yr_per_s <= 0.0 {
+            return;
+        }
+        while self.runs() {
+            self.update_uplift();
+            self.step_land();
             let left = self.state.world.last_push_yr + self.params.run_on_yr - self.state.world.time_yr;
             if !progress(self, left.max(0.0)) {
                 return;

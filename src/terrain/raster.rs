@@ -91,7 +91,7 @@ impl TinRaster {
 
     /// Nodal values interpolated by a surface with continuous slopes, for shading.
     ///
-    /// Exact at the nodes and for linear fields; see [`Patch`] for the scheme. `tin` is the one the raster was made
+    /// Exact at the nodes and for linear fields; see `Patch` for the scheme. `tin` is the one the raster was made
     /// for.
     pub fn smooth(&self, tin: &Tin, values: &[f64]) -> Vec<f32> {
         let patches: Vec<Patch> = patches(tin, values);
