@@ -1,0 +1,120 @@
+//! Whatever hands and commands do, the session lives, the land stays finite, and the same input gives the same bits.
+
+use glam::DVec2;
+use orogen::gesture::command::{Action, Arrow, Command};
+use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::sim::{Quarantine, Sim, SimParams, TICK_US, World};
+use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
+use proptest::prelude::*;
+
+const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+
+fn place() -> impl Strategy<Value = DVec2> {
+    // Some places are off the table, as ghosts are.
+    (-100.0..1300.0, -100.0..800.0).prop_map(|(x, y)| DVec2::new(x, y))
+}
+
+fn event() -> impl Strategy<Value = ContactEvent> {
+    let phase = prop_oneof![
+        3 => Just(Phase::Down),
+        6 => Just(Phase::Move),
+        2 => Just(Phase::Up),
+        1 => Just(Phase::Cancel),
+    ];
+    let size = prop::option::weighted(0.2, (1.0..60.0, 1.0..60.0).prop_map(|(w, h)| DVec2::new(w, h)));
+    let confidence = prop::option::weighted(0.1, prop_oneof![Just(0.0f32), Just(1.0f32)]);
+    (phase, 0u64..12, place(), size, confidence).prop_map(|(phase, id, position, size_mm, confidence)| {
+        let key = ContactKey {
+            source: Source::File,
+            device: 0,
+            id,
+            generation: 0,
+        };
+        ContactEvent {
+            phase,
+            contact: Contact {
+                key,
+                position,
+                size_mm,
+                confidence,
+            },
+        }
+    })
+}
+
+fn command() -> impl Strategy<Value = Command> {
+    let arrow = || (place(), place()).prop_map(|(from, to)| Arrow { from, to });
+    let action = prop_oneof![
+        4 => Just(Action::Play),
+        1 => Just(Action::Pause),
+        2 => (0.0..5.0).prop_map(Action::Speed),
+        3 => Just(Action::Undo),
+        2 => place().prop_map(|at| Action::Remove { at }),
+        2 => arrow().prop_map(Action::AddArrow),
+        2 => arrow().prop_map(Action::EditArrow),
+        2 => place().prop_map(|at| Action::FlipFault { at }),
+        1 => Just(Action::StartOver),
+        1 => Just(Action::Earth),
+    ];
+    (action, any::<bool>()).prop_map(|(action, north)| Command {
+        side: Some(if north { Side::North } else { Side::South }),
+        ..Command::new(action)
+    })
+}
+
+fn frames() -> impl Strategy<Value = Vec<InputFrame>> {
+    let frame = (
+        0u64..80_000,
+        prop::collection::vec(event(), 0..6),
+        prop::collection::vec(command(), 0..2),
+    );
+    prop::collection::vec(frame, 1..60).prop_map(|frames| {
+        let mut t_us = 0;
+        let later = |(wait, events, commands)| {
+            t_us += wait;
+            InputFrame {
+                t_us,
+                events,
+                commands,
+            }
+        };
+        frames.into_iter().map(later).collect()
+    })
+}
+
+fn play(frames: &[InputFrame]) -> Sim {
+    let map = PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE);
+    let world = World::new(map, 200, 3).expect("a world");
+    let mut params = SimParams::default();
+    // Coarse, so that many sessions fit into a test.
+    params.mountain.cells = 96 * 96;
+    params.run_on_yr = 2e5;
+    let mut sim = Sim::new(world, params);
+    for frame in frames {
+        sim.feed(frame.clone());
+    }
+    let last = frames.last().map_or(0, |frame| frame.t_us);
+    while sim.ticks() * TICK_US <= last {
+        sim.tick();
+    }
+    sim.finish_input();
+    sim.run_on(|_, _| true);
+    sim
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn sessions_live_and_replay(frames in frames()) {
+        let sim = play(&frames);
+        prop_assert!(sim.world().z.iter().all(|z| z.is_finite()));
+        prop_assert_eq!(sim.quarantine(), Quarantine::default());
+        prop_assert!(sim.world().plates.plates().len() <= 16);
+        prop_assert!(sim.node_uplift().iter().all(|u| u.abs() < 1e-2));
+        prop_assert!(sim.ticks() >= frames.last().map_or(0, |frame| frame.t_us) / TICK_US);
+        let again = play(&frames);
+        prop_assert!(sim.world().z == again.world().z, "the same input gives the same bits");
+        prop_assert_eq!(sim.counts(), again.counts());
+    }
+}
