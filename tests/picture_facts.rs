@@ -183,9 +183,9 @@ fn light_comes_from_the_north_west() {
 fn shadows_are_cool_and_lights_are_warm() {
     let summit = LAND.size() / 2.0;
     let image = map(&surface(320, 180, summit));
-    // Below the snow, which lies on one side only.
+    // Half-way down, where the same woods stand on both sides; higher up one side may be snow and the other rock.
     let tint = |x: f64, y: f64| {
-        let [r, _, b] = pixel(&image, summit + 8e3 * DVec2::new(x, y).normalize());
+        let [r, _, b] = pixel(&image, summit + 7.5e3 * DVec2::new(x, y).normalize());
         b / r
     };
     let (dark, lit) = (tint(1.0, -1.0), tint(-1.0, 1.0));

@@ -26,6 +26,7 @@ pub(super) struct Palette {
     water_meadow: Vec3,
     shallow: Vec3,
     deep: Vec3,
+    shore: Vec3,
     haze: Vec3,
 }
 
@@ -47,10 +48,10 @@ impl Palette {
                 (180.0, 0xe5_e1c0),
                 (400.0, 0xe2_deb9),
                 (800.0, 0xda_d9b0),
-                (1200.0, 0xcd_cfa3),
-                (1700.0, 0xc8_c6a4),
-                (2200.0, 0xcc_c5b2),
-                (3000.0, 0xd8_d3cb),
+                (1200.0, 0xcc_c9a6),
+                (1600.0, 0xc6_bfa4),
+                (2000.0, 0xc3_bbaf),
+                (3000.0, 0xd3_cec8),
             ]),
             wood: Ramp::new(&[
                 (-200.0, 0xab_ba99),
@@ -63,7 +64,8 @@ impl Palette {
             snow: linear(0xef_f1f2),
             water_meadow: linear(0xb4_c69c),
             shallow: linear(0x9f_c4cf),
-            deep: linear(0x4f_86a3),
+            deep: linear(0x48_7c9b),
+            shore: linear(0x4d_7d96),
             haze: linear(0xc4_d0d8),
         }
     }
@@ -82,19 +84,15 @@ impl Palette {
             .open
             .at(over_lowland + (20.0 + 0.1 * over_lowland.clamp(0.0, 1200.0)) * border);
 
-        // The plains: a quilt of fields.
-        let plain = 1.0 - smoothstep(0.05, 0.16, spot.form_steepness + 0.3 * slope);
+        // The plains: broad soft fields of tone that follow the gentle relief, greener in hollows, paler on swells.
+        let plain = 1.0 - smoothstep(0.05, 0.16, spot.form_steepness + 0.5 * spot.hillside);
+        // Beside mountains the mean height around is theirs, and says nothing of the plain.
+        let open = 1.0 - smoothstep(0.004, 0.02, spot.form_steepness);
+        let swell = open * (spot.rise / 14.0).clamp(-1.0, 1.0);
         if plain > 0.0 {
-            let warp = 0.35 * fine;
-            let (word, edge) = noise::parcel(east / 820.0 + warp, north / 820.0 - warp, 31);
-            let tone = 0.030 * noise::signed(word) + 0.05 * broad;
-            let warmth = 0.025 * noise::signed(word.wrapping_mul(0x9E37_79B1));
-            let hedge = 0.035 * (1.0 - smoothstep(0.0, 0.10, edge));
-            let field = Vec3::new(
-                1.0 + tone + warmth - hedge,
-                1.0 + tone - hedge,
-                1.0 + tone - warmth - hedge,
-            );
+            let tone = 0.030 * broad + 0.035 * swell;
+            let warmth = 0.022 * broad + 0.030 * swell;
+            let field = Vec3::new(1.0 + tone + warmth, 1.0 + tone, 1.0 + tone - warmth);
             colour *= Vec3::ONE.lerp(field, plain);
         }
         let meadow = floodplain * (1.0 - smoothstep(0.06, 0.20, slope));
@@ -104,18 +102,10 @@ impl Palette {
         // the plain, along its rivers.
         let tree_line = TREE_LINE - 130.0 * spot.northness + 190.0 * border;
         let below = 1.0 - smoothstep(tree_line - 260.0, tree_line + 60.0, height);
-        let rooted = smoothstep(0.07, 0.26, slope) * (1.0 - smoothstep(0.85, 1.25, slope));
-        let patch = smoothstep(
-            0.22,
-            0.48,
-            0.42 * broad + 0.40 * fine + (spot.rise / 90.0).clamp(-0.4, 0.4),
-        ) * 0.62;
-        let clearing = smoothstep(
-            -0.85,
-            -0.25,
-            fine + 0.5 * broad + 0.45 * spot.northness - 0.35 * spot.convexity,
-        );
-        let wood = below * (rooted * clearing).max(patch * (1.0 - smoothstep(0.85, 1.25, slope)));
+        let rooted = smoothstep(0.06, 0.20, spot.hillside) * (1.0 - smoothstep(0.85, 1.25, slope));
+        let grove = smoothstep(0.15, 0.75, 0.9 * broad + 0.12 * fine - 0.35 * swell);
+        let clearing = smoothstep(-0.95, -0.25, 0.45 * fine + 0.6 * broad + 0.45 * spot.northness);
+        let wood = below * (rooted * clearing).max(0.30 * grove * plain);
         colour = colour.lerp(self.wood.at(height), 0.88 * wood);
 
         // Scree below, rock where nothing holds.
@@ -127,20 +117,37 @@ impl Palette {
             1.02 - 0.20 * alpine,
             slope + 0.10 * fine + 0.10 * spot.convexity,
         );
+        // Near the snow even gentle ground is stones.
+        let barren = smoothstep(SNOW_LINE - 600.0, SNOW_LINE - 50.0, height + 260.0 * border);
+        let bare = bare.max(0.8 * barren);
         let grain = 1.0 + 0.07 * fine;
         colour = colour.lerp(self.rock.at(height) * grain, bare * (0.55 + 0.45 * alpine));
 
         // Snow: high, in the shade lower, in hollows lower, not on faces it slides from.
-        let snow_line = SNOW_LINE - 330.0 * spot.northness + 170.0 * border + 160.0 * spot.convexity;
+        let snow_line = SNOW_LINE - 330.0 * spot.northness + 170.0 * border + 90.0 * spot.convexity;
         let lies = smoothstep(snow_line - 90.0, snow_line + 190.0, height + 120.0 * fine);
-        let slides = smoothstep(0.80, 1.15, slope + 0.08 * fine);
-        colour.lerp(self.snow, lies * (1.0 - 0.85 * slides))
+        let slides = smoothstep(0.85, 1.25, slope + 0.08 * fine);
+        colour.lerp(self.snow, lies * (1.0 - 0.75 * slides))
     }
 
-    /// Colour of standing water of some depth, metres.
-    pub(super) fn lake(&self, depth: f32) -> Vec3 {
-        self.shallow
-            .lerp(self.deep, 1.0 - (-depth.max(0.0) / 260.0).exp())
+    /// Colour of standing water of some depth, metres: tints that step at the depths of a bathymetric chart, softly,
+    /// over a bottom that is faintly shaded.
+    pub(super) fn lake(&self, depth: f32, spot: &Spot) -> Vec3 {
+        const STEPS: [f32; 6] = [10.0, 30.0, 75.0, 150.0, 300.0, 600.0];
+        let depth = depth.max(0.0);
+        let stepped: f32 = STEPS
+            .iter()
+            .map(|&step| smoothstep(0.86 * step, 1.14 * step, depth))
+            .sum();
+        let steady = 1.0 - (-depth / 260.0).exp();
+        let share = 0.45 * stepped / STEPS.len() as f32 + 0.55 * steady;
+        let bottom = Vec3::ONE.lerp(spot.light, 0.22);
+        self.shallow.lerp(self.deep, share) * bottom * (0.80 + 0.20 * spot.sky)
+    }
+
+    /// Colour of a shoreline.
+    pub(super) fn shore(&self) -> Vec3 {
+        self.shore
     }
 
     /// The colour seen through the air above low land: `height_share` 0 in the plains, 1 at the summits.

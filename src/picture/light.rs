@@ -25,6 +25,12 @@ const SKY_DIRECTIONS: usize = 12;
 /// Most pixels the sky is computed at; above, every second (third, …) pixel serves, as the sky's light is soft.
 const SKY_PIXELS: usize = 700_000;
 
+/// Standard deviation of the blur that hides the mesh, in mesh edges.
+const GRAIN: f32 = 0.16;
+
+/// How much crests and valley floors gain over the land around.
+const EDGE: f32 = 0.8;
+
 /// Colours of light. Flat open ground receives exactly white.
 const SUN: Vec3 = Vec3::new(1.0, 0.93, 0.77);
 const SKY: Vec3 = Vec3::new(0.43, 0.63, 1.0);
@@ -33,11 +39,13 @@ const SUN_SHARE: f32 = 0.66;
 
 /// The shape of the land as light and land cover see it. All heights are in pixels, exaggerated.
 pub(super) struct Relief {
-    /// Heights without the facets of the mesh they come from.
+    /// Heights of the solid ground, their crests and valley floors sharpened.
     ground: Field,
     /// Heights over a few mesh edges: the direction of slopes.
     slopes: Field,
-    /// Heights over some kilometres: the big forms.
+    /// Steepness of `slopes` in the neighbourhood.
+    ruggedness: Field,
+    /// Heights over some kilometres: the big forms. A lake counts with its level.
     forms: Field,
     /// Tangent of the horizon towards the sun.
     towards_sun: Field,
@@ -56,8 +64,10 @@ pub(super) struct Relief {
 pub(super) struct Spot {
     /// Light relative to flat open ground.
     pub(super) light: Vec3,
-    /// Tangent of the true steepness.
+    /// Tangent of the true steepness that plants, stones and snow meet.
     pub(super) steepness: f32,
+    /// Tangent of the true steepness over a few mesh edges, without gullies.
+    pub(super) hillside: f32,
     /// Tangent of the true steepness of the big form around.
     pub(super) form_steepness: f32,
     /// 1 on north faces, −1 on south faces, 0 on flat ground.
@@ -71,22 +81,36 @@ pub(super) struct Spot {
 }
 
 impl Relief {
-    /// From heights in metres on pixels of `metres_per_pixel`, known every `spacing` pixels.
-    pub(super) fn new(metres: &Field, metres_per_pixel: f32, spacing: f32, exaggeration: f32) -> Self {
-        let mut ground = metres.clone();
+    /// From heights and depths of water in metres on pixels of `metres_per_pixel`, known every `spacing` pixels.
+    pub(super) fn new(
+        metres: &Field,
+        depth: &Field,
+        metres_per_pixel: f32,
+        spacing: f32,
+        exaggeration: f32,
+    ) -> Self {
         let scale = exaggeration / metres_per_pixel;
+        let mut ground = metres.clone();
         ground.data.par_iter_mut().for_each(|z| *z *= scale);
-        let ground = ground.blurred(if spacing > 1.0 { 0.22 * spacing } else { 0.0 });
+        let mut level = ground.clone();
+        level
+            .data
+            .par_iter_mut()
+            .zip(&depth.data)
+            .for_each(|(z, depth)| *z += scale * depth.max(0.0));
         let slopes = ground.blurred((0.9 * spacing).max(2.0));
-        let forms = ground.blurred((2200.0 / metres_per_pixel).max(2.0 * spacing));
-        let towards_sun = horizon(&ground, SUN_AZIMUTH);
+        let ruggedness = ruggedness(&slopes, spacing);
+        let ground = sharpened(&ground, &slopes, &ruggedness, spacing);
+        let forms = level.blurred((2200.0 / metres_per_pixel).max(2.0 * spacing));
+        let towards_sun = horizon(&level, SUN_AZIMUTH);
         let pixels = ground.data.len();
         let skip = ((pixels as f64 / SKY_PIXELS as f64).sqrt().ceil() as usize).max(1);
-        let sky = sky_view(&every(&ground, skip), SKY_DIRECTIONS);
+        let sky = sky_view(&every(&level, skip), SKY_DIRECTIONS);
         let gully_wavelength = 2.0 * spacing;
         Self {
             ground,
             slopes,
+            ruggedness,
             forms,
             towards_sun,
             sky,
@@ -109,7 +133,8 @@ impl Relief {
         let steep = length(middle);
 
         // In the plains only the smoothed land counts: its finest noise is no form.
-        let rugged = smoothstep(0.015, 0.10, steep);
+        let i = y * self.ground.width + x;
+        let rugged = smoothstep(0.015, 0.10, self.ruggedness.data[i]);
         let mut slope = mix(middle, fine, rugged);
         let mut furrow = 0.0;
         if self.gully_wavelength > 0.0 && steep > 0.06 {
@@ -122,7 +147,6 @@ impl Relief {
         let lit = (slope.0 * gentle, slope.1 * gentle);
         let direct = 0.74 * sun_on(lit) + 0.26 * sun_on((form.0 * gentle * 1.3, form.1 * gentle * 1.3));
 
-        let i = y * self.ground.width + x;
         let shadow = 1.0 - smoothstep(PENUMBRA.0, PENUMBRA.1, self.towards_sun.data[i]);
         let skip = self.ground.width as f32 / self.sky.width as f32;
         let sky = self
@@ -138,11 +162,13 @@ impl Relief {
         let contrast = 0.95 + 0.25 * height_share;
         let light = Vec3::ONE + (light - Vec3::ONE) * contrast;
 
-        let true_steepness = length(slope) / self.exaggeration;
+        // Half the hillside's, half the spot's own: what grows and lies asks for both.
+        let true_steepness = 0.5 * (length(slope) + steep) / self.exaggeration;
         let bend = self.ground.data[i] - self.slopes.data[i];
         Spot {
             light: shoulder(light.max(Vec3::ZERO)),
             steepness: true_steepness,
+            hillside: steep / self.exaggeration,
             form_steepness: length(form) / self.exaggeration,
             northness: if steep > 1e-6 {
                 -slope.1 / length(slope).max(0.15)
@@ -200,6 +226,39 @@ impl Relief {
         }
         (carved, profile)
     }
+}
+
+/// Heights with sharper crests and valley floors: between nodes `spacing` pixels apart the interpolant rounds what in
+/// nature is an edge, so what it has over its own mean `slopes` over a few edges is raised again, in the mountains.
+fn sharpened(heights: &Field, slopes: &Field, ruggedness: &Field, spacing: f32) -> Field {
+    if spacing <= 1.0 {
+        return heights.clone();
+    }
+    // Just wide enough to take out the bends of the interpolant at the mesh's sides.
+    let mut sharp = heights.blurred(GRAIN * spacing);
+    sharp
+        .data
+        .par_iter_mut()
+        .zip(&slopes.data)
+        .zip(&ruggedness.data)
+        .for_each(|((z, mean), steep)| *z += EDGE * smoothstep(0.06, 0.25, *steep) * (*z - mean));
+    sharp
+}
+
+/// Steepness of smoothed heights around each pixel: on a crest, that of its flanks.
+fn ruggedness(slopes: &Field, spacing: f32) -> Field {
+    let mut steepness = slopes.clone();
+    let width = steepness.width;
+    steepness
+        .data
+        .par_chunks_mut(width)
+        .enumerate()
+        .for_each(|(y, row)| {
+            for (x, value) in row.iter_mut().enumerate() {
+                *value = length(slopes.gradient(x, y));
+            }
+        });
+    steepness.blurred((1.2 * spacing).max(1.0))
 }
 
 /// Every `skip`-th pixel's neighbourhood as one pixel, heights in its own pixels.

@@ -7,7 +7,7 @@ use super::colour::{Encoder, smoothstep};
 use super::cover::Palette;
 use super::field::Field;
 use super::light::Relief;
-use super::water::{self, Lakes};
+use super::water::{self, Lakes, Rivers};
 use super::{MapFrame, MapStyle, cover, opaque};
 use crate::surface::Surface;
 
@@ -50,15 +50,17 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
     let metres_per_pixel = frame.metres_per_pixel() as f32;
     let spacing = (surface.spacing / frame.metres_per_pixel()) as f32;
     let ground = ground(surface, width, height, spacing);
+    let lakes = Lakes::new(surface, width, height, spacing);
     let relief = Relief::new(
         &ground,
+        &lakes.depth,
         metres_per_pixel,
         spacing,
         style.vertical_exaggeration as f32,
     );
-    let lakes = Lakes::new(surface, width, height, spacing);
     let courses = water::courses(surface, &relief, frame);
     let floodplain = water::floodplain(&courses, frame);
+    let rivers = Rivers::new(&courses, frame)?;
     let palette = Palette::new(lowland(&ground));
     let encoder = Encoder::new();
     let summit = ground
@@ -99,16 +101,17 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
                 let at = place(x as f32, y as f32);
                 let broad = broad.sample(x as f32 / coarse, y as f32 / coarse);
                 let mut colour = palette.land(at, z, broad, floodplain.at(x, y), &spot) * spot.light;
+                colour = rivers.over(colour, i);
                 let wet = lakes.cover.data[i];
                 if wet > 0.0 {
-                    let still = palette.lake(lakes.depth.data[i]) * (0.75 + 0.25 * spot.sky);
+                    let still = palette.lake(lakes.depth.data[i], &spot);
                     // The shore is where the water covers half; a thin darker line runs along it.
                     let line = smoothstep(0.36, 0.48, wet) * (1.0 - smoothstep(0.52, 0.68, wet));
-                    colour = colour.lerp(still, smoothstep(0.44, 0.56, wet)) * (1.0 - 0.22 * line);
+                    colour = colour.lerp(still, smoothstep(0.44, 0.56, wet));
+                    colour = colour.lerp(palette.shore(), 0.45 * line);
                 }
                 *pixel = opaque(encoder.encode(palette.through_air(colour, height_share)));
             }
         });
-    water::draw(&mut pixmap, &courses, frame);
     Some(pixmap)
 }

@@ -1,10 +1,11 @@
 //! Rivers and lakes.
 
 use glam::DVec2;
+use glam::Vec3;
 use rayon::prelude::*;
-use tiny_skia::{FillRule, Paint, PathBuilder, Pixmap, Transform};
+use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
 
-use super::colour::smoothstep;
+use super::colour::{linear, smoothstep};
 use super::field::Field;
 use super::light::Relief;
 use super::{MapFrame, noise};
@@ -31,7 +32,10 @@ impl Lakes {
             .data
             .par_iter_mut()
             .for_each(|depth| *depth = smoothstep(0.0, 2.0 * LEAST_DEPTH, *depth));
-        let cover = cover.blurred((0.55 * spacing).max(0.6));
+        let soft = (0.55 * spacing).max(0.6);
+        let cover = cover.blurred(soft);
+        // Depths are known on straight mesh edges; their bends are no form of the bottom.
+        let depth = depth.blurred(if spacing > 1.0 { soft } else { 0.0 });
         Self { cover, depth }
     }
 }
@@ -40,11 +44,11 @@ impl Lakes {
 /// (Leopold & Maddock 1953) would make brooks vanish beside streams, so maps flatten it.
 fn drawn_width(drainage: f64) -> f64 {
     let km2 = drainage / (KM * KM);
-    (0.5 * (km2.max(0.1) / 20.0).powf(0.30)).min(1.9)
+    (0.54 * (km2.max(0.1) / 20.0).powf(0.31)).min(2.9)
 }
 
 /// Distance over which a river grows to its width below its source, in pixels of a map 1000 pixels high.
-const TAPER: f64 = 14.0;
+const TAPER: f64 = 70.0;
 
 /// A river in pixels of the map.
 pub(super) struct Course {
@@ -56,7 +60,10 @@ pub(super) struct Course {
 const WANDERING: f32 = 0.02;
 
 /// How far wandering takes a river from its line, in mesh edges: below what the data knows.
-const WANDER_REACH: f64 = 0.2;
+const WANDER_REACH: f64 = 0.35;
+
+/// Wavelength of the wandering, in mesh edges: long, so that lines stay smooth.
+const WANDER_WAVE: f64 = 5.0;
 
 /// The surface's rivers on the map. On flat land they wander off the straight mesh edges; the way they do depends on
 /// the place alone, so that tributaries still meet their main stem.
@@ -65,10 +72,10 @@ pub(super) fn courses(surface: &Surface, relief: &Relief, frame: MapFrame) -> Ve
     let wander = |plan: DVec2, pixel: DVec2| {
         let steep = relief.steepness_at(pixel.x as f32, pixel.y as f32);
         let freedom = f64::from(1.0 - smoothstep(WANDERING, 4.0 * WANDERING, steep));
-        let p = (plan / (1.3 * surface.spacing)).as_vec2();
+        let p = (plan / (0.5 * WANDER_WAVE * surface.spacing)).as_vec2();
         let aside = DVec2::new(
-            f64::from(noise::fractal(p.x, p.y, 2, 71)),
-            f64::from(noise::fractal(p.x, p.y, 2, 72)),
+            f64::from(noise::gradient(p.x, p.y, 71)),
+            f64::from(noise::gradient(p.x, p.y, 72)),
         );
         plan + aside * (WANDER_REACH * surface.spacing * freedom)
     };
@@ -93,16 +100,16 @@ pub(super) fn courses(surface: &Surface, relief: &Relief, frame: MapFrame) -> Ve
         .collect()
 }
 
-/// Fills the outlines of all courses at once, so that they do not darken each other where they meet. `shrink` pixels
-/// of the map are one of `pixmap`; widths are pixels of a map 1000 pixels high.
-fn fill(
-    pixmap: &mut Pixmap,
+/// Cover (0–255) of the outlines of all courses at once, so that they do not darken each other where they meet.
+/// `shrink` pixels of the map are one of the mask's; widths are pixels of a map 1000 pixels high.
+fn cover(
+    (columns, rows): (u32, u32),
     courses: &[Course],
     scale: f64,
     shrink: f64,
-    ink: [u8; 4],
     width: impl Fn(f64) -> f64,
-) {
+) -> Option<Mask> {
+    let mut mask = Mask::new(columns, rows)?;
     let mut path = PathBuilder::new();
     for Course { line, drainage } in courses {
         let mut walked = 0.0;
@@ -113,7 +120,7 @@ fn fill(
             if i > 0 {
                 walked += here.distance(behind);
             }
-            let taper = 0.25 + 0.75 * (walked / (TAPER * scale)).min(1.0);
+            let taper = 0.45 + 0.55 * (walked / (TAPER * scale)).min(1.0);
             let half = 0.5 * scale * width(drainage[i]) * taper;
             banks.push((here, (ahead - behind).normalize_or_zero().perp() * half));
         }
@@ -129,21 +136,54 @@ fn fill(
         path.close();
     }
     if let Some(path) = path.finish() {
-        let mut paint = Paint::default();
-        let [red, green, blue, alpha] = ink;
-        paint.set_color_rgba8(red, green, blue, alpha);
-        pixmap.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
+        mask.fill_path(&path, FillRule::Winding, true, Transform::identity());
     }
+    Some(mask)
 }
 
-/// Rivers over the land: a darker casing that shows along the large ones, then the water.
-pub(super) fn draw(pixmap: &mut Pixmap, courses: &[Course], frame: MapFrame) {
-    let scale = f64::from(frame.scale());
-    fill(pixmap, courses, scale, 1.0, [52, 88, 110, 90], |drainage| {
-        let width = drawn_width(drainage);
-        width + 0.9 * (width / 1.6).min(1.0)
-    });
-    fill(pixmap, courses, scale, 1.0, [106, 156, 184, 255], drawn_width);
+/// Rivers on the pixels.
+pub(super) struct Rivers {
+    water: Mask,
+    casing: Mask,
+    blue: Vec3,
+    dark: Vec3,
+}
+
+/// Strength of the casing, a darker line that shows along large rivers.
+const CASING: f32 = 0.36;
+
+impl Rivers {
+    /// `None` only for sizes a mask cannot have.
+    pub(super) fn new(courses: &[Course], frame: MapFrame) -> Option<Self> {
+        let scale = f64::from(frame.scale());
+        let size = (frame.width, frame.height);
+        Some(Self {
+            water: cover(size, courses, scale, 1.0, drawn_width)?,
+            casing: cover(size, courses, scale, 1.0, |drainage| {
+                let width = drawn_width(drainage);
+                width + 0.9 * (width / 1.6).min(1.0)
+            })?,
+            blue: linear(0x4a_8bb2),
+            dark: linear(0x34_586e),
+        })
+    }
+
+    /// The colour of pixel `i` of the map with its river over it.
+    #[inline]
+    pub(super) fn over(&self, colour: Vec3, i: usize) -> Vec3 {
+        let casing = self.casing.data()[i];
+        if casing == 0 {
+            return colour;
+        }
+        // Pixels half covered look nearly bare when mixed in linear light.
+        let ink = |cover: u8| {
+            let part = f32::from(cover) / 255.0;
+            part * (1.5 - 0.5 * part)
+        };
+        colour
+            .lerp(self.dark, CASING * ink(casing))
+            .lerp(self.blue, ink(self.water.data()[i]))
+    }
 }
 
 /// Where rivers have spread their gravels: 1 beside large rivers, 0 away from them.
@@ -165,15 +205,20 @@ pub(super) fn floodplain(courses: &[Course], frame: MapFrame) -> Floodplain {
         height: height as usize,
         data: vec![0.0; width as usize * height as usize],
     };
-    if let Some(mut pixmap) = Pixmap::new(width, height) {
-        let scale = f64::from(frame.scale());
-        let shrink = f64::from(COARSENESS);
-        fill(&mut pixmap, courses, scale, shrink, [0, 0, 0, 255], |drainage| {
+    let scale = f64::from(frame.scale());
+    let mask = self::cover(
+        (width, height),
+        courses,
+        scale,
+        f64::from(COARSENESS),
+        |drainage| {
             let km2 = drainage / (KM * KM);
-            26.0 * f64::from(smoothstep(15.0, 1200.0, km2 as f32).sqrt())
-        });
-        for (value, pixel) in cover.data.iter_mut().zip(pixmap.pixels()) {
-            *value = f32::from(pixel.alpha()) / 255.0;
+            22.0 * f64::from(smoothstep(15.0, 2400.0, km2 as f32).sqrt())
+        },
+    );
+    if let Some(mask) = mask {
+        for (value, &alpha) in cover.data.iter_mut().zip(mask.data()) {
+            *value = f32::from(alpha) / 255.0;
         }
     }
     Floodplain {

@@ -152,25 +152,100 @@ fn strahler_orders(graph: FlowGraph<'_>, threshold: f64) -> Vec<u32> {
     order
 }
 
-/// Rivers as [`trace`] finds them, smoothed for maps: lines bend instead of following mesh edges, and still meet.
+/// Rivers as a map shows them: smoothed, so that lines bend instead of following mesh edges and still meet; through
+/// lakes (water drawn over them hides them, and where it does not no line ends on dry land); without the short ones
+/// that only fray the picture.
+///
+/// A river without others is left out where less than [`LEAST_LENGTH`] of it is above water.
 pub fn drawn(graph: FlowGraph<'_>, threshold: f64) -> Vec<River> {
     let positions = relaxed(graph, threshold);
-    let rivers = trace(
-        FlowGraph {
-            positions: &positions,
-            ..graph
-        },
-        threshold,
-    );
-    rivers.iter().map(curved).collect()
+    let dry = vec![false; positions.len()];
+    let through_lakes = FlowGraph { lake: &dry, ..graph };
+    let main_donor = main_donors(through_lakes, threshold);
+    let order = strahler_orders(through_lakes, threshold);
+    let mut lines = stems(through_lakes, threshold, &main_donor);
+
+    // A river ends on one with a larger area. In ascending order of area at the mouth, all that end on a river are
+    // judged before it.
+    lines.sort_by(|a, b| {
+        let area = |line: &[u32]| line.last().map_or(0.0, |&mouth| graph.drainage[mouth as usize]);
+        area(a).total_cmp(&area(b)).then_with(|| a.cmp(b))
+    });
+    let least = LEAST_LENGTH * threshold.sqrt();
+    let mut carries = vec![false; positions.len()];
+    let mut rivers = Vec::new();
+    for line in lines {
+        let (Some(&source), Some(&last)) = (line.first(), line.last()) else {
+            continue;
+        };
+        let mouth = graph.receivers[last as usize];
+        let joined = line.iter().any(|&node| carries[node as usize]);
+        let visible: f64 = line
+            .iter()
+            .zip(line.iter().skip(1).chain([&mouth]))
+            .filter(|&(&from, &to)| !(graph.lake[from as usize] && graph.lake[to as usize]))
+            .map(|(&from, &to)| graph.positions[from as usize].distance(graph.positions[to as usize]))
+            .sum();
+        if !joined && visible < least {
+            continue;
+        }
+        carries[mouth as usize] = true;
+        let mut points: Vec<RiverPoint> = line
+            .iter()
+            .map(|&node| RiverPoint {
+                at: positions[node as usize],
+                drainage: graph.drainage[node as usize],
+            })
+            .collect();
+        if mouth != last {
+            points.push(RiverPoint {
+                at: positions[mouth as usize],
+                drainage: graph.drainage[last as usize],
+            });
+        }
+        if points.len() >= 2 {
+            rivers.push((
+                source,
+                curved(&River {
+                    points,
+                    order: order[last as usize],
+                }),
+            ));
+        }
+    }
+    rivers.sort_by_key(|&(source, _)| source);
+    rivers.into_iter().map(|(_, river)| river).collect()
+}
+
+/// Shortest river a map shows, in units of √(threshold): by Hack's law (1957) a valley of the threshold's area is
+/// about 1.4 of them long.
+const LEAST_LENGTH: f64 = 2.0;
+
+/// The nodes of each main stem, from its source down to the last that is its own.
+fn stems(graph: FlowGraph<'_>, threshold: f64, main_donor: &[Option<u32>]) -> Vec<Vec<u32>> {
+    (0..graph.positions.len())
+        .filter(|&i| graph.drainage[i] >= threshold && main_donor[i].is_none())
+        .map(|source| {
+            let mut line = vec![source as u32];
+            let mut node = source;
+            loop {
+                let next = graph.receivers[node] as usize;
+                if next == node || main_donor[next] != Some(node as u32) {
+                    return line;
+                }
+                line.push(next as u32);
+                node = next;
+            }
+        })
+        .collect()
 }
 
 /// How often channel nodes move to the mean of their neighbours along the stream: enough to take out the zigzag
 /// of mesh edges, too little to leave the valley floor (each round moves a node by a fraction of an edge).
-const RELAXATION_ROUNDS: usize = 3;
+const RELAXATION_ROUNDS: usize = 6;
 
-/// Channel nodes drawn towards their neighbours along the main stem, `(donor + 2 self + receiver) / 4`. Sources,
-/// outlets and shores stay. Because nodes move and not lines, tributaries still end on their main stem.
+/// Channel nodes drawn towards their neighbours along the main stem, `(donor + 2 self + receiver) / 4`. Sources
+/// and outlets stay. Because nodes move and not lines, tributaries still end on their main stem.
 fn relaxed(graph: FlowGraph<'_>, threshold: f64) -> Vec<DVec2> {
     let main_donor = main_donors(graph, threshold);
     let mut positions = graph.positions.to_vec();
@@ -180,7 +255,6 @@ fn relaxed(graph: FlowGraph<'_>, threshold: f64) -> Vec<DVec2> {
             let receiver = graph.receivers[i] as usize;
             if let Some(donor) = main_donor[i]
                 && receiver != i
-                && !graph.lake[i]
             {
                 *position = (before[donor as usize] + 2.0 * before[i] + before[receiver]) / 4.0;
             }
@@ -312,10 +386,16 @@ mod tests {
     #[test]
     fn drawn_rivers_still_meet_and_get_shorter() {
         let net = Net::new();
-        let raw = trace(net.graph(), 3.0);
+        let raw = trace(
+            FlowGraph {
+                lake: &[false; 9],
+                ..net.graph()
+            },
+            3.0,
+        );
         let drawn = drawn(net.graph(), 3.0);
         assert_eq!(drawn.len(), raw.len());
-        for tributary in &drawn[2..] {
+        for tributary in &drawn[1..] {
             let mouth = tributary.points.last().unwrap().at;
             assert!(
                 drawn[0].points.iter().any(|p| p.at == mouth),
@@ -323,11 +403,31 @@ mod tests {
             );
         }
         assert!(drawn[0].length() < raw[0].length());
-        assert_eq!(drawn[1].points[0].at, net.positions[6], "the shore stays");
+        assert_eq!(drawn[0].points[0].at, net.positions[0], "the source stays");
         assert_eq!(
-            drawn[1].points.last().unwrap().at,
+            drawn[0].points.last().unwrap().at,
             net.positions[8],
-            "the outlet stays"
+            "through the lake to the outlet, which stays"
         );
+    }
+
+    #[test]
+    fn drawn_rivers_leave_out_short_ones_that_carry_no_other() {
+        let mut net = Net::new();
+        let sources = |net: &Net| -> Vec<DVec2> {
+            drawn(net.graph(), 3.0)
+                .iter()
+                .map(|river| river.points[0].at)
+                .collect()
+        };
+        let [first, second, third] = [0, 1, 3].map(|i: usize| net.positions[i]);
+        assert_eq!(sources(&net), [first, second, third]);
+        // Two root-thresholds are 3.46 long.
+        net.positions[3] = net.positions[4] + DVec2::new(0.0, 3.0);
+        assert_eq!(sources(&net), [first, second], "too short");
+        net.positions[1] = net.positions[2] + DVec2::new(0.0, -30.0);
+        net.lake[1] = true;
+        net.lake[2] = true;
+        assert_eq!(sources(&net), [first], "under water");
     }
 }
