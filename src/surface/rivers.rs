@@ -156,7 +156,7 @@ fn strahler_orders(graph: FlowGraph<'_>, threshold: f64) -> Vec<u32> {
 /// lakes (water drawn over them hides them, and where it does not no line ends on dry land); without the short ones
 /// that only fray the picture.
 ///
-/// A river without others is left out where less than [`LEAST_LENGTH`] of it is above water.
+/// A river without others is left out where less than `LEAST_LENGTH` of it is above water.
 pub fn drawn(graph: FlowGraph<'_>, threshold: f64) -> Vec<River> {
     let positions = relaxed(graph, threshold);
     let dry = vec![false; positions.len()];
