@@ -33,6 +33,7 @@ fn surface(width: usize, height: usize) -> Surface {
     Surface {
         height: Raster::from_fn(width, height, LAND, ridges),
         lake_depth: Raster::from_fn(width, height, LAND, |_| 0.0),
+        drainage: Raster::from_fn(width, height, LAND, |_| 0.0),
         spacing: 545.0,
         rivers: (0..250).map(river).collect(),
         plates: Vec::new(),

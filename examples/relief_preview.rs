@@ -89,6 +89,7 @@ fn range(nodes: usize, elapsed_yr: f64, width: usize, height: usize) -> Result<S
     Ok(Surface {
         height: raster(pixels.smooth(&tin, &z)),
         lake_depth: raster(pixels.linear(&depth)),
+        drainage: raster(pixels.linear(erosion.drainage())),
         spacing: tin.spacing(),
         rivers: drawn(graph, RIVER_AREA),
         plates: vec![

@@ -14,7 +14,14 @@
 //! | [`terrain`] | TIN, flow routing with lakes, stream power, landslides | plates, gestures, window |
 //! | [`sim`] | owns the world: tick, parameters, undo, roll-back, quarantine | window, clock, files |
 //! | [`surface`] | what a tick yields for eyes and files: plain data | who made it |
+//! | [`live`] | the session's thread: input in without loss, the newest surface out, panics survived | window, clock |
+//! | [`instrument`] | whose contact is it: land, edit tool or control; the controls of each side | worlds, window, clock |
+//! | [`kiosk`] | attract, invite, play, idle, reset; staff access | worlds, window, clock, files |
+//! | [`settings`] | the one settings file, validated | window |
 //! | [`picture`] | surface → relief map | worlds |
+//! | `gpu`, `render` | the graphics card; surface → shaded land in plan and in perspective (feature `app`) | gestures, worlds |
+//! | `ui` | ink, controls and staff menu on top of the land (feature `app`) | worlds, window |
+//! | `app` | window, event loop, threads, metrics (feature `app`) | |
 //! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
 //! | [`input`] | recordings of other tools, maps from files | worlds |
 //! | [`report`] | the facts of a run | clock, files |
@@ -49,7 +56,27 @@ pub mod sim;
 
 pub mod surface;
 
+pub mod live;
+
+pub mod instrument;
+
+pub mod kiosk;
+
+pub mod settings;
+
 pub mod picture;
+
+#[cfg(feature = "app")]
+pub mod gpu;
+
+#[cfg(feature = "app")]
+pub mod render;
+
+#[cfg(feature = "app")]
+pub mod ui;
+
+#[cfg(feature = "app")]
+pub mod app;
 
 pub mod export;
 

@@ -268,6 +268,7 @@ impl Bench {
         let height = field(raster.smooth(&tin, &z));
         let surface = Surface {
             lake_depth: field(vec![0.0; 1920 * 1080]),
+            drainage: field(vec![0.0; 1920 * 1080]),
             height,
             spacing: (tin.extent().area() / tin.len() as f64).sqrt(),
             rivers: Vec::new(),

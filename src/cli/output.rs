@@ -161,6 +161,7 @@ impl LandFiles<'_> {
         Surface {
             height: field(raster.smooth(self.tin, self.z)),
             lake_depth: field(raster.linear(&water.lake_depth)),
+            drainage: field(raster.linear(self.flow.drainage())),
             spacing: self.tin.spacing(),
             rivers: rivers::drawn(water.graph(&self), DRAWN_RIVER_AREA),
             plates: self.marks.plates,

@@ -109,6 +109,8 @@ pub struct Surface {
     /// Depth of standing water, metres; 0 on dry land. (A depth, not a level: a level would have to be interpolated
     /// exactly as the heights are, or slopes would be under water.)
     pub lake_depth: Raster,
+    /// Area that drains through each place, m²: water, meadows and forests follow it.
+    pub drainage: Raster,
     /// Typical distance between the points the heights come from, metres. Finer detail than this is not in the
     /// data, and only a picture may add it.
     pub spacing: f64,

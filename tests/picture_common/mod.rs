@@ -33,6 +33,7 @@ pub fn surface(width: usize, height: usize, summit: DVec2) -> Surface {
     Surface {
         height: Raster::from_fn(width, height, LAND, mountain(summit)),
         lake_depth: Raster::from_fn(width, height, LAND, flat),
+        drainage: Raster::from_fn(width, height, LAND, flat),
         spacing: LAND.width / width as f64,
         rivers: Vec::new(),
         plates: Vec::new(),

@@ -1,0 +1,1 @@
+//! Window, event loop, threads and metrics.

@@ -1,0 +1,1 @@
+//! The graphics card: adapter, device, and what happens when it is lost.

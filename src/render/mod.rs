@@ -1,0 +1,1 @@
+//! Surface → shaded land, in plan and in perspective, on the graphics card.

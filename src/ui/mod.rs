@@ -1,0 +1,1 @@
+//! Ink, controls and staff menu on top of the land.
