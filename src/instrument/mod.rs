@@ -1,1 +1,17 @@
 //! Whose contact is it: the land's, the edit tool's or a control's; and the controls of each side of the table.
+//!
+//! * [`Instrument::feed`] takes each contact event and says where it goes ([`Route`]). A contact keeps its owner until
+//!   it lifts, whatever it slides over; several people do different things at once.
+//! * Controls act when the contact lifts on them, and not when it has slid off (WCAG 2.5.2); what cannot be taken
+//!   back by undo is held. They stand in a row along each long side, turned towards it, within reach of a seated
+//!   visitor (610 mm), and belong to that side: its tool, its undo.
+//! * What has been done comes out of [`Instrument::drain`] as [`Deed`]s, of which the [`Command`]s are what a gesture
+//!   file records.
+//!
+//! [`Command`]: crate::gesture::command::Command
+
+mod control;
+mod deed;
+
+pub use control::{ControlId, ControlKind, ControlView};
+pub use deed::{Deed, EditView, Editing, Key, Route, Scene};

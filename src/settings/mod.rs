@@ -1,1 +1,242 @@
 //! The one settings file.
+//!
+//! [`Settings`] is what a table needs to know about itself: its size and orientation, idle times, the staff's PIN,
+//! quality. The file is TOML, every key is optional, and what is not there has its default. [`KEYS`] is the one table
+//! of keys with unit, range and help: it reads and writes the file, and drives sliders and property tests.
+//!
+//! * [`Settings::parse`] takes bytes and refuses in one line with file, line and key; an unknown key is an error that
+//!   names the nearest known one.
+//! * [`Settings::to_toml`] writes every key with its help as a comment: the defaults so written are a sample file.
+//!
+//! No file is opened here.
+
+mod keys;
+mod read;
+mod write;
+
+pub use keys::{Bound, Domain, KEYS, Key, Value};
+pub use read::SettingsError;
+
+use glam::DVec2;
+
+use crate::gesture::command::Mode;
+use crate::units::{KM, PlanMap};
+
+/// The version written and read.
+pub const VERSION: u64 = 1;
+
+/// Fewest and most digits of the staff's PIN.
+pub const PIN_DIGITS: (usize, usize) = (4, 8);
+
+/// All settings, by the sections of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The world that is shown.
+    pub mode: Mode,
+    /// The table's frame.
+    pub table: TableSettings,
+    /// The circle of an unattended table.
+    pub kiosk: KioskSettings,
+    /// The way in for staff.
+    pub staff: StaffSettings,
+    /// What the machine is asked for.
+    pub quality: QualitySettings,
+    /// What is shown.
+    pub view: ViewSettings,
+    /// What is written.
+    pub files: FileSettings,
+}
+
+/// `[table]`: size and orientation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableSettings {
+    /// Width of the picture on the table, mm.
+    pub width_mm: f64,
+    /// Height of the picture, mm; `None`: from the window's shape.
+    pub height_mm: Option<f64>,
+    /// How the touch device lies on the picture.
+    pub orientation: Orientation,
+    /// Ground along the table's short side, km.
+    pub short_side_km: f64,
+}
+
+/// `[kiosk]`: times of the circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KioskSettings {
+    /// Nobody has touched for so long: the warning begins, s.
+    pub idle_s: f64,
+    /// Length of the warning, s.
+    pub countdown_s: f64,
+    /// Untouched for so long, the view eases into flight, s.
+    pub flight_after_s: f64,
+    /// True: the show plays on an untouched table.
+    pub attract: bool,
+    /// A visit that lasts longer is ended whatever touches, hours; `None`: never.
+    pub reset_hours: Option<f64>,
+}
+
+/// `[staff]`: the way in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StaffSettings {
+    /// [`PIN_DIGITS`] digits.
+    pub pin: String,
+    /// The corner that is held.
+    pub corner: Corner,
+}
+
+/// `[quality]`: what the machine is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QualitySettings {
+    /// Nodes of the terrain; `None`: chosen for the machine.
+    pub nodes: Option<u64>,
+    /// Pixels rendered per pixel shown, along one side; `None`: follows the frame rate.
+    pub scale: Option<f64>,
+    /// Most frames per second while the show plays, Hz.
+    pub attract_hz: f64,
+    /// The same on a software adapter, Hz.
+    pub attract_software_hz: f64,
+}
+
+/// `[view]`: what is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ViewSettings {
+    /// No flight, no eased motion.
+    pub reduced_motion: bool,
+    /// Figures are shown from the start.
+    pub readouts: bool,
+}
+
+/// `[files]`: what is written. Paths are as in the file, relative to the caller's folder.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FileSettings {
+    /// JSON lines of metrics go there.
+    pub metrics: Option<String>,
+    /// Folder of the log.
+    pub log: Option<String>,
+}
+
+/// How a touch device lies on the picture: turned by quarters, and perhaps mirrored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Orientation {
+    /// Quarter turns clockwise, 0 to 3, from the device to the picture.
+    pub quarter_turns: u8,
+    /// Left and right of the device are exchanged before it is turned.
+    pub mirrored: bool,
+}
+
+/// A corner of the table, named as on the map: north is the top.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Corner {
+    /// Top left.
+    #[default]
+    NorthWest,
+    /// Top right.
+    NorthEast,
+    /// Bottom left.
+    SouthWest,
+    /// Bottom right.
+    SouthEast,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Mountain,
+            table: TableSettings {
+                width_mm: 1209.6,
+                height_mm: None,
+                orientation: Orientation::default(),
+                short_side_km: 100.0,
+            },
+            kiosk: KioskSettings {
+                idle_s: 75.0,
+                countdown_s: 20.0,
+                flight_after_s: 25.0,
+                attract: true,
+                reset_hours: Some(4.0),
+            },
+            staff: StaffSettings {
+                pin: "2580".to_owned(),
+                corner: Corner::NorthWest,
+            },
+            quality: QualitySettings {
+                nodes: None,
+                scale: None,
+                attract_hz: 30.0,
+                attract_software_hz: 10.0,
+            },
+            view: ViewSettings {
+                reduced_motion: false,
+                readouts: false,
+            },
+            files: FileSettings::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Size of the table that shows a window of `window_px` (any positive size), mm.
+    pub fn table_size_mm(&self, window_px: DVec2) -> DVec2 {
+        let width = self.table.width_mm;
+        let height = width * window_px.y / window_px.x;
+        DVec2::new(width, self.table.height_mm.unwrap_or(height))
+    }
+
+    /// The map of a table of `size_mm`.
+    pub fn plan_map(&self, size_mm: DVec2) -> PlanMap {
+        PlanMap::new(size_mm, self.table.short_side_km * KM)
+    }
+}
+
+impl Orientation {
+    /// All eight, with their names in the file.
+    pub const ALL: [(&'static str, Self); 8] = [
+        ("0", Self::new(0, false)),
+        ("90", Self::new(1, false)),
+        ("180", Self::new(2, false)),
+        ("270", Self::new(3, false)),
+        ("0-mirrored", Self::new(0, true)),
+        ("90-mirrored", Self::new(1, true)),
+        ("180-mirrored", Self::new(2, true)),
+        ("270-mirrored", Self::new(3, true)),
+    ];
+
+    /// Turned clockwise by so many quarters (modulo 4), after mirroring.
+    pub const fn new(quarter_turns: u8, mirrored: bool) -> Self {
+        Self {
+            quarter_turns: quarter_turns % 4,
+            mirrored,
+        }
+    }
+
+    /// A place on the device on the picture; both are in parts of their size, x right, y down, 0 to 1.
+    pub fn apply(self, place: DVec2) -> DVec2 {
+        let x = if self.mirrored { 1.0 - place.x } else { place.x };
+        match self.quarter_turns % 4 {
+            0 => DVec2::new(x, place.y),
+            1 => DVec2::new(1.0 - place.y, x),
+            2 => DVec2::new(1.0 - x, 1.0 - place.y),
+            _ => DVec2::new(place.y, 1.0 - x),
+        }
+    }
+}
+
+impl Corner {
+    /// All four, with their names in the file.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("north-west", Self::NorthWest),
+        ("north-east", Self::NorthEast),
+        ("south-west", Self::SouthWest),
+        ("south-east", Self::SouthEast),
+    ];
+
+    /// Where it is on a table of `size_mm`.
+    pub fn position(self, size_mm: DVec2) -> DVec2 {
+        match self {
+            Self::NorthWest => DVec2::ZERO,
+            Self::NorthEast => DVec2::new(size_mm.x, 0.0),
+            Self::SouthWest => DVec2::new(0.0, size_mm.y),
+            Self::SouthEast => size_mm,
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! The one table of keys: name, help, what is allowed, and where in [`Settings`] it lives.
+
+use super::{Corner, Orientation, PIN_DIGITS, Settings};
+use crate::gesture::command::Mode;
+
+/// Unit, range and step of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// Its unit; `1` for ratios and numbers of things.
+    pub unit: &'static str,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// Step of a slider. Values between steps are allowed; of numbers of things only whole ones.
+    pub step: f64,
+    /// True for numbers of things.
+    pub whole: bool,
+}
+
+/// What a key may hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Domain {
+    /// A number.
+    Number(Bound),
+    /// A number, or the word that stands for none.
+    NumberOr(Bound, &'static str),
+    /// `true` or `false`.
+    Switch,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// Digits, as many as [`PIN_DIGITS`] says.
+    Pin,
+    /// A path, or an empty text for none.
+    Path,
+}
+
+/// The value of a key.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Of [`Domain::Number`] and [`Domain::NumberOr`].
+    Number(f64),
+    /// The word of [`Domain::NumberOr`].
+    Word,
+    /// Of [`Domain::Switch`].
+    Switch(bool),
+    /// Of [`Domain::Choice`], [`Domain::Pin`] and [`Domain::Path`].
+    Text(String),
+}
+
+/// One key of the file.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// The table of the file that it stands in; empty for the file itself.
+    pub section: &'static str,
+    /// Its name there.
+    pub name: &'static str,
+    /// What it means, in one line; also the comment above it in the file.
+    pub help: &'static str,
+    /// What it may hold.
+    pub domain: Domain,
+    /// Reads the field.
+    pub get: fn(&Settings) -> Value,
+    /// Writes the field. A value that [`Key::admits`] says no to leaves it as it is or makes it something allowed.
+    set: fn(&mut Settings, &Value),
+}
+
+impl Key {
+    /// The key with its section, as errors name it (`table.width_mm`).
+    pub fn path(&self) -> String {
+        if self.section.is_empty() {
+            self.name.to_owned()
+        } else {
+            format!("{}.{}", self.section, self.name)
+        }
+    }
+
+    /// True when the key may hold `value`.
+    pub fn admits(&self, value: &Value) -> bool {
+        match (self.domain, value) {
+            (Domain::Number(bound) | Domain::NumberOr(bound, _), Value::Number(number)) => {
+                bound.contains(*number)
+            }
+            (Domain::NumberOr(..), Value::Word) | (Domain::Switch, Value::Switch(_)) => true,
+            (Domain::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
+            (Domain::Pin, Value::Text(pin)) => {
+                (PIN_DIGITS.0..=PIN_DIGITS.1).contains(&pin.len()) && pin.bytes().all(|b| b.is_ascii_digit())
+            }
+            (Domain::Path, Value::Text(path)) => !path.chars().any(char::is_control),
+            _ => false,
+        }
+    }
+
+    /// Puts `value` into its field; false, and nothing changes, when the key may not hold it.
+    pub fn put(&self, settings: &mut Settings, value: &Value) -> bool {
+        let admitted = self.admits(value);
+        if admitted {
+            (self.set)(settings, value);
+        }
+        admitted
+    }
+
+    /// What the key may hold, in words.
+    pub fn expected(&self) -> String {
+        match self.domain {
+            Domain::Number(bound) => bound.in_words(),
+            Domain::NumberOr(bound, word) => format!("{} or \"{word}\"", bound.in_words()),
+            Domain::Switch => "true or false".to_owned(),
+            Domain::Choice(words) => {
+                let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+                format!("one of {}", quoted.join(", "))
+            }
+            Domain::Pin => format!("{} to {} digits in quotes", PIN_DIGITS.0, PIN_DIGITS.1),
+            Domain::Path => "a path in quotes".to_owned(),
+        }
+    }
+}
+
+impl Bound {
+    /// True for numbers in the range (and whole, where only these mean anything).
+    pub fn contains(&self, number: f64) -> bool {
+        (self.min..=self.max).contains(&number) && !(self.whole && number.fract() != 0.0)
+    }
+
+    fn in_words(&self) -> String {
+        let kind = if self.whole { "a whole number" } else { "a number" };
+        let unit = if self.unit == "1" { "" } else { self.unit };
+        let words = format!("{kind} in {}..={} {unit}", self.min, self.max);
+        words.trim_end().to_owned()
+    }
+}
+
+const fn bound(unit: &'static str, min: f64, max: f64, step: f64) -> Bound {
+    Bound {
+        unit,
+        min,
+        max,
+        step,
+        whole: false,
+    }
+}
+
+const NODES: Bound = Bound {
+    unit: "1",
+    min: 1000.0,
+    max: 1_000_000.0,
+    step: 1000.0,
+    whole: true,
+};
+
+/// The first of each pair.
+const fn names<T: Copy, const N: usize>(table: &[(&'static str, T); N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut i = 0;
+    while i < N {
+        names[i] = table[i].0;
+        i += 1;
+    }
+    names
+}
+
+const ORIENTATIONS: [&str; 8] = names(&Orientation::ALL);
+const CORNERS: [&str; 4] = names(&Corner::ALL);
+
+fn name_of<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> Value {
+    let found = table.iter().find(|(_, v)| v == value);
+    Value::Text(found.map_or_else(String::new, |(name, _)| (*name).to_owned()))
+}
+
+fn set_named<T: Copy>(table: &[(&'static str, T)], field: &mut T, value: &Value) {
+    if let Value::Text(word) = value
+        && let Some((_, named)) = table.iter().find(|(name, _)| name == word)
+    {
+        *field = *named;
+    }
+}
+
+fn set_number(field: &mut f64, value: &Value) {
+    if let Value::Number(number) = value {
+        *field = *number;
+    }
+}
+
+fn number_or(value: Option<f64>) -> Value {
+    value.map_or(Value::Word, Value::Number)
+}
+
+fn set_number_or(field: &mut Option<f64>, value: &Value) {
+    match value {
+        Value::Number(number) => *field = Some(*number),
+        Value::Word => *field = None,
+        Value::Switch(_) | Value::Text(_) => {}
+    }
+}
+
+fn set_switch(field: &mut bool, value: &Value) {
+    if let Value::Switch(on) = value {
+        *field = *on;
+    }
+}
+
+fn path_or(path: Option<&String>) -> Value {
+    Value::Text(path.cloned().unwrap_or_default())
+}
+
+fn set_path(field: &mut Option<String>, value: &Value) {
+    if let Value::Text(path) = value {
+        *field = (!path.is_empty()).then(|| path.clone());
+    }
+}
+
+/// All keys, in the order of the file. Keys of one section stand together, those without one first.
+pub const KEYS: &[Key] = &[
+    Key {
+        section: "",
+        name: "mode",
+        help: "The world that is shown.",
+        domain: Domain::Choice(&["mountain"]),
+        get: |s| Value::Text(s.mode.name().to_owned()),
+        set: |s, v| {
+            if let Value::Text(word) = v {
+                s.mode = Mode::from_name(word).unwrap_or(s.mode);
+            }
+        },
+    },
+    Key {
+        section: "table",
+        name: "width_mm",
+        help: "Width of the picture on the table. Measure it: controls and hands are sized by it.",
+        domain: Domain::Number(bound("mm", 200.0, 5000.0, 0.1)),
+        get: |s| Value::Number(s.table.width_mm),
+        set: |s, v| set_number(&mut s.table.width_mm, v),
+    },
+    Key {
+        section: "table",
+        name: "height_mm",
+        help: "Height of the picture on the table; \"auto\" takes it from the shape of the window.",
+        domain: Domain::NumberOr(bound("mm", 100.0, 5000.0, 0.1), "auto"),
+        get: |s| number_or(s.table.height_mm),
+        set: |s, v| set_number_or(&mut s.table.height_mm, v),
+    },
+    Key {
+        section: "table",
+        name: "orientation",
+        help: "How touches are turned (clockwise, degrees) and mirrored to lie under the fingers.",
+        domain: Domain::Choice(&ORIENTATIONS),
+        get: |s| name_of(&Orientation::ALL, &s.table.orientation),
+        set: |s, v| set_named(&Orientation::ALL, &mut s.table.orientation, v),
+    },
+    Key {
+        section: "table",
+        name: "short_side_km",
+        help: "Ground that lies along the short side of the table.",
+        domain: Domain::Number(bound("km", 20.0, 500.0, 5.0)),
+        get: |s| Value::Number(s.table.short_side_km),
+        set: |s, v| set_number(&mut s.table.short_side_km, v),
+    },
+    Key {
+        section: "kiosk",
+        name: "idle_s",
+        help: "When nobody has touched for so long, the warning begins.",
+        domain: Domain::Number(bound("s", 20.0, 600.0, 5.0)),
+        get: |s| Value::Number(s.kiosk.idle_s),
+        set: |s, v| set_number(&mut s.kiosk.idle_s, v),
+    },
+    Key {
+        section: "kiosk",
+        name: "countdown_s",
+        help: "Length of the warning, which any touch ends. Less than 20 s is too short for some visitors.",
+        domain: Domain::Number(bound("s", 20.0, 120.0, 5.0)),
+        get: |s| Value::Number(s.kiosk.countdown_s),
+        set: |s, v| set_number(&mut s.kiosk.countdown_s, v),
+    },
+    Key {
+        section: "kiosk",
+        name: "flight_after_s",
+        help: "When nobody has touched for so long, the view eases into a slow flight.",
+        domain: Domain::Number(bound("s", 5.0, 600.0, 5.0)),
+        get: |s| Value::Number(s.kiosk.flight_after_s),
+        set: |s, v| set_number(&mut s.kiosk.flight_after_s, v),
+    },
+    Key {
+        section: "kiosk",
+        name: "attract",
+        help: "The show plays while nobody is there.",
+        domain: Domain::Switch,
+        get: |s| Value::Switch(s.kiosk.attract),
+        set: |s, v| set_switch(&mut s.kiosk.attract, v),
+    },
+    Key {
+        section: "kiosk",
+        name: "reset_hours",
+        help: "A visit that lasts longer is ended whatever touches the table; \"never\" lets it go on.",
+        domain: Domain::NumberOr(bound("h", 0.5, 48.0, 0.5), "never"),
+        get: |s| number_or(s.kiosk.reset_hours),
+        set: |s, v| set_number_or(&mut s.kiosk.reset_hours, v),
+    },
+    Key {
+        section: "staff",
+        name: "pin",
+        help: "Opens the staff menu. Change it.",
+        domain: Domain::Pin,
+        get: |s| Value::Text(s.staff.pin.clone()),
+        set: |s, v| {
+            if let Value::Text(pin) = v {
+                s.staff.pin.clone_from(pin);
+            }
+        },
+    },
+    Key {
+        section: "staff",
+        name: "corner",
+        help: "The corner that is held for 3 s to be asked for the PIN; north is the top of the picture.",
+        domain: Domain::Choice(&CORNERS),
+        get: |s| name_of(&Corner::ALL, &s.staff.corner),
+        set: |s, v| set_named(&Corner::ALL, &mut s.staff.corner, v),
+    },
+    Key {
+        section: "quality",
+        name: "nodes",
+        help: "Points of the terrain; \"auto\" suits the machine.",
+        domain: Domain::NumberOr(NODES, "auto"),
+        get: |s| number_or(s.quality.nodes.map(|nodes| nodes as f64)),
+        set: |s, v| {
+            let mut nodes = None;
+            set_number_or(&mut nodes, v);
+            s.quality.nodes = nodes.map(|nodes| nodes as u64);
+        },
+    },
+    Key {
+        section: "quality",
+        name: "scale",
+        help: "Pixels rendered per pixel shown, along one side; \"auto\" follows the frame rate.",
+        domain: Domain::NumberOr(bound("1", 0.25, 2.0, 0.05), "auto"),
+        get: |s| number_or(s.quality.scale),
+        set: |s, v| set_number_or(&mut s.quality.scale, v),
+    },
+    Key {
+        section: "quality",
+        name: "attract_hz",
+        help: "Most frames per second while the show plays.",
+        domain: Domain::Number(bound("Hz", 5.0, 240.0, 5.0)),
+        get: |s| Value::Number(s.quality.attract_hz),
+        set: |s, v| set_number(&mut s.quality.attract_hz, v),
+    },
+    Key {
+        section: "quality",
+        name: "attract_software_hz",
+        help: "The same where a processor stands in for the graphics card.",
+        domain: Domain::Number(bound("Hz", 1.0, 60.0, 1.0)),
+        get: |s| Value::Number(s.quality.attract_software_hz),
+        set: |s, v| set_number(&mut s.quality.attract_software_hz, v),
+    },
+    Key {
+        section: "view",
+        name: "reduced_motion",
+        help: "No flight and no eased motion.",
+        domain: Domain::Switch,
+        get: |s| Value::Switch(s.view.reduced_motion),
+        set: |s, v| set_switch(&mut s.view.reduced_motion, v),
+    },
+    Key {
+        section: "view",
+        name: "readouts",
+        help: "Figures (age, speed, shortening) are shown from the start.",
+        domain: Domain::Switch,
+        get: |s| Value::Switch(s.view.readouts),
+        set: |s, v| set_switch(&mut s.view.readouts, v),
+    },
+    Key {
+        section: "files",
+        name: "metrics",
+        help: "File for a line of figures each second; empty for none.",
+        domain: Domain::Path,
+        get: |s| path_or(s.files.metrics.as_ref()),
+        set: |s, v| set_path(&mut s.files.metrics, v),
+    },
+    Key {
+        section: "files",
+        name: "log",
+        help: "Folder for the log; empty for the usual one.",
+        domain: Domain::Path,
+        get: |s| path_or(s.files.log.as_ref()),
+        set: |s, v| set_path(&mut s.files.log, v),
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_default_is_admitted_and_every_name_is_there_once() {
+        let defaults = Settings::default();
+        let mut paths: Vec<String> = KEYS.iter().map(Key::path).collect();
+        for key in KEYS {
+            assert!(key.admits(&(key.get)(&defaults)), "{}", key.path());
+        }
+        paths.sort();
+        let before = paths.len();
+        paths.dedup();
+        assert_eq!(paths.len(), before);
+    }
+
+    #[test]
+    fn each_key_writes_its_own_field_and_no_other() {
+        for key in KEYS {
+            let other = match (key.domain, (key.get)(&Settings::default())) {
+                (Domain::Number(b) | Domain::NumberOr(b, _), _) => Value::Number(b.max),
+                (Domain::Switch, Value::Switch(on)) => Value::Switch(!on),
+                (Domain::Choice(words), _) => Value::Text(words[words.len() - 1].to_owned()),
+                (Domain::Pin, _) => Value::Text("00000000".to_owned()),
+                (Domain::Path, _) => Value::Text("a/b".to_owned()),
+                (domain, value) => panic!("{domain:?} with {value:?}"),
+            };
+            let mut settings = Settings::default();
+            assert!(key.put(&mut settings, &other), "{}", key.path());
+            for each in KEYS {
+                let expected = if each.path() == key.path() {
+                    other.clone()
+                } else {
+                    (each.get)(&Settings::default())
+                };
+                assert_eq!(
+                    (each.get)(&settings),
+                    expected,
+                    "{} by {}",
+                    each.path(),
+                    key.path()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn values_of_another_kind_or_out_of_range_are_not_put() {
+        let mut settings = Settings::default();
+        for key in KEYS {
+            let wrong = match key.domain {
+                Domain::Number(b) | Domain::NumberOr(b, _) => vec![
+                    Value::Number(b.min - 1.0),
+                    Value::Number(b.max * 1.01),
+                    Value::Number(f64::NAN),
+                    Value::Switch(true),
+                ],
+                Domain::Switch => vec![Value::Number(1.0), Value::Word],
+                Domain::Choice(_) => vec![Value::Text("sideways".to_owned()), Value::Word],
+                Domain::Pin => ["123", "123456789", "12a4", "１２３４"]
+                    .map(|pin| Value::Text(pin.to_owned()))
+                    .to_vec(),
+                Domain::Path => vec![Value::Text("a\nb".to_owned())],
+            };
+            for value in wrong {
+                assert!(!key.put(&mut settings, &value), "{} takes {value:?}", key.path());
+            }
+        }
+        assert_eq!(settings, Settings::default());
+        assert!(!NODES.contains(2000.5));
+    }
+}
