@@ -110,6 +110,22 @@ impl Camera {
         self.target - self.forward * self.distance.unwrap_or(FARTHEST_DIAGONALS * self.reach)
     }
 
+    /// What it looks at, plan metres and height.
+    pub fn target(&self) -> DVec3 {
+        self.target
+    }
+
+    /// Unit vectors to the right, up, and into the picture.
+    pub fn axes(&self) -> [DVec3; 3] {
+        [self.right, self.up, self.forward]
+    }
+
+    /// Tangents of half the angles of view, across and up; 0 where all rays are parallel.
+    pub fn half_view(&self) -> (f64, f64) {
+        let half = self.distance.map_or(0.0, |distance| self.span / 2.0 / distance);
+        (half * self.aspect(), half)
+    }
+
     /// Metres of ground per pixel at the place it looks at.
     pub fn metres_per_pixel(&self) -> f64 {
         self.span / self.viewport_px.y
