@@ -72,13 +72,13 @@ fn forms(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 @fragment
 fn light(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let size = ground.extent / ground.grid;
-    let from = position.xy * LIGHT_CELLS;
-    let here = level(vec2<i32>(from));
+    let start = position.xy * LIGHT_CELLS;
+    let here = level(vec2<i32>(start));
     // Towards the sun in the north-west: the tangent of the horizon there.
     var horizon = -1.0;
     var distance = 0.9 * LIGHT_CELLS;
     for (var step = 0; step < SUN_STEPS; step++) {
-        let cell = from + vec2<f32>(-0.70710678, -0.70710678) * distance;
+        let cell = start + vec2<f32>(-0.70710678, -0.70710678) * distance;
         let rise = (level(vec2<i32>(cell)) - here) * ground.exaggeration;
         horizon = max(horizon, rise / (distance * 0.5 * (size.x + size.y)));
         distance = distance * SUN_STRIDE + 0.35;
@@ -91,7 +91,7 @@ fn light(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         var rim = 0.0;
         var far = 1.2 * LIGHT_CELLS;
         for (var step = 0; step < SKY_STEPS; step++) {
-            let rise = (level(vec2<i32>(from + way * far)) - here) * ground.exaggeration;
+            let rise = (level(vec2<i32>(start + way * far)) - here) * ground.exaggeration;
             rim = max(rim, rise / (far * 0.5 * (size.x + size.y)));
             far = far * SKY_STRIDE + 0.4;
         }

@@ -3,8 +3,8 @@
 //! A [`Gpu`] is one device from the day it was found to the day it is lost. Nothing repairs a lost device: everything
 //! on it is made anew, and each new one has a higher [`Gpu::generation`].
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Interfaces that are asked first, and the one that is asked if they have nothing.
 const BACKENDS: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
@@ -42,6 +42,8 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     generation: u64,
     lost: Arc<AtomicBool>,
+    /// The first thing the device refused since somebody asked.
+    fault: Arc<Mutex<Option<String>>>,
 }
 
 /// An entry to all interfaces of this machine. GL can show pictures only on the `display` that is named here.
@@ -108,8 +110,12 @@ impl Gpu {
             flag.store(true, Ordering::Release);
         });
         let flag = Arc::clone(&lost);
+        let fault = Arc::new(Mutex::new(None));
+        let first = Arc::clone(&fault);
         device.on_uncaptured_error(Arc::new(move |error| {
             tracing::error!("graphics: {error}");
+            let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert_with(|| error.to_string());
             // What the card had no memory for is not there when it is used: begin anew.
             if matches!(error, wgpu::Error::OutOfMemory { .. }) {
                 flag.store(true, Ordering::Release);
@@ -122,7 +128,13 @@ impl Gpu {
             info,
             generation: GENERATIONS.fetch_add(1, Ordering::Relaxed) + 1,
             lost,
+            fault,
         })
+    }
+
+    /// The first thing the device refused since this was last asked. Each is logged as well; nothing panics.
+    pub fn take_fault(&self) -> Option<String> {
+        self.fault.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
     /// True once the device is gone: nothing it holds can be used any more.
