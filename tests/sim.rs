@@ -359,3 +359,59 @@ fn a_stopped_clock_does_not_run_on() {
         assert_eq!(sim.world().time_yr, stopped);
     }
 }
+
+#[test]
+fn the_shown_land_rises_between_two_steps_and_meets_the_next_one() {
+    let mut sim = sim(3000);
+    play(
+        &mut sim,
+        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
+        6000,
+    );
+    // The heights at the moment, with what erosion takes between two steps and without.
+    let mut rise = Vec::new();
+    let mut shown = |sim: &mut Sim| {
+        sim.refresh_uplift();
+        sim.rise_into(&mut rise);
+        let (z, pending) = (&sim.world().z, sim.pending_yr());
+        let at = |rates: &[f64]| -> Vec<f64> { z.iter().zip(rates).map(|(z, r)| z + r * pending).collect() };
+        [at(&rise), at(sim.node_uplift())]
+    };
+    let rms = |a: &[f64], b: &[f64]| {
+        (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
+    };
+    let (mut moved, mut jumps) = (f64::INFINITY, [0.0; 2]);
+    let mut before = shown(&mut sim);
+    for _ in 0..60 {
+        let revision = sim.land_revision();
+        let stepped = sim.tick().erosion_steps > 0;
+        let now = shown(&mut sim);
+        assert_eq!(sim.land_revision() > revision, stepped);
+        if stepped {
+            jumps = [0, 1].map(|k| jumps[k] + rms(&now[k], &before[k]));
+        } else {
+            moved = moved.min(rms(&now[0], &before[0]));
+        }
+        before = now;
+    }
+    assert!(moved > 0.02, "a moving land moves at every tick: {moved} m");
+    let [jump, bare] = jumps;
+    assert!(
+        jump < 0.5 * bare,
+        "steps show half as much: {jump} m, not {bare} m"
+    );
+}
+
+#[test]
+fn contacts_that_are_withdrawn_end_what_they_do() {
+    let mut sim = sim(500);
+    let at = DVec2::new(600.0, 340.0);
+    play(&mut sim, vec![frame(0, vec![event(Phase::Down, 1, at)])], 1000);
+    assert_eq!(sim.hands().count(), 1);
+    let mut resumed = Sim::resume(sim.checkpoint().at_tick(100));
+    assert_eq!(resumed.ticks(), 100);
+    resumed.cancel_contacts();
+    resumed.tick();
+    assert_eq!(resumed.hands().count(), 0);
+    assert_eq!(sim.hands().count(), 1, "the other one is another session");
+}

@@ -11,7 +11,7 @@ use super::failure::Failure;
 use super::output::{Timings, draw_frame, land_of, write_json};
 use super::{Common, PictureChoice, ReplayArgs, on_threads};
 use crate::export::OutDir;
-use crate::gesture::command::Mode;
+use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
 use crate::mountain::MountainParams;
 use crate::report::Report;
@@ -120,6 +120,11 @@ fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
     }
     if let Some(years) = args.years.or(header.years) {
         params.run_on_yr = years;
+    }
+    let mut commands = file.frames.iter().flat_map(|frame| &frame.commands);
+    if !commands.any(|command| matches!(command.action, Action::Scrub(_))) {
+        // Nobody will look back.
+        params.history_bytes = 0;
     }
     let map = PlanMap::new(header.size_mm, DEFAULT_SHORT_SIDE);
     let world = World::new(map, nodes, seed).map_err(Failure::input)?;

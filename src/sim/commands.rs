@@ -13,7 +13,7 @@ use crate::units::MYR;
 
 impl Sim {
     /// Keeps the land as it is for undo.
-    pub(super) fn remember(&mut self, side: Side) {
+    pub(super) fn remember(&mut self, side: Side, starts_over: bool) {
         let bytes = self.state.world.snapshot_bytes().max(1);
         let most = (self.params.undo_bytes / bytes).max(1);
         if self.state.undo.len() >= most {
@@ -23,25 +23,76 @@ impl Sim {
         self.state.undo.push(Arc::new(Snapshot {
             side,
             world: self.state.world.clone(),
+            starts_over,
         }));
+    }
+
+    /// The land goes on from here: if it was looked back at, what came after is gone.
+    pub(super) fn depart(&mut self, now_yr: f64) {
+        if self.state.history.depart(now_yr) {
+            self.state.undo.retain(|s| s.world.time_yr <= now_yr);
+        }
     }
 
     /// Brings back land, plates and time as the last push of `side` (of anybody, if `None`) found them. Pushes
     /// that came after it are gone too.
     pub fn undo(&mut self, side: Option<Side>) -> bool {
-        let state = &mut self.state;
-        let Some(index) = state
-            .undo
-            .iter()
-            .rposition(|s| side.is_none_or(|side| s.side == side))
-        else {
+        let Some(index) = self.undoable(side) else {
             return false;
         };
+        self.depart(self.state.world.time_yr);
+        let state = &mut self.state;
         state.world.clone_from(&state.undo[index].world);
+        if state.undo[index..].iter().any(|s| s.starts_over) {
+            // What was kept since is the past of another land.
+            state.history.clear();
+        }
+        state.history.forget_after(state.world.time_yr);
         state.undo.truncate(index);
-        state.pending_yr = 0.0;
-        state.stale = true;
         state.counts.undone += 1;
+        self.land_changed();
+        true
+    }
+
+    /// Which snapshot undo would bring back: of those who look back, only what was before.
+    pub(super) fn undoable(&self, side: Option<Side>) -> Option<usize> {
+        let state = &self.state;
+        let (back, now_yr) = (state.history.visiting(), state.world.time_yr);
+        state
+            .undo
+            .iter()
+            .rposition(|s| side.is_none_or(|side| s.side == side) && (!back || s.world.time_yr <= now_yr))
+    }
+
+    /// Another land has taken the place of the one before.
+    fn land_changed(&mut self) {
+        self.state.pending_yr = 0.0;
+        self.state.stale = true;
+        self.wear.forget();
+        self.land_revision += 1;
+        self.keep_history();
+    }
+
+    /// Takes the land as it is into the history, if it is time.
+    pub(super) fn keep_history(&mut self) {
+        self.state
+            .history
+            .record(&self.state.world, self.params.history_bytes);
+    }
+
+    /// Stops the clock and brings back the world nearest to `years`, at or before them. The ones after it stay in reach
+    /// until the land goes on from there.
+    fn scrub(&mut self, years: f64) -> bool {
+        let state = &mut self.state;
+        let kept = state
+            .history
+            .visit(years, &state.world, self.params.history_bytes);
+        let Some(world) = kept else {
+            return false;
+        };
+        state.world.clone_from(&world);
+        state.paused = true;
+        self.land_changed();
         true
     }
 
@@ -60,6 +111,10 @@ impl Sim {
                 self.state.pace_yr_per_s = my_per_s * MYR;
                 return;
             }
+            Action::Scrub(years) => {
+                self.state.counts.idle_commands += u64::from(!self.scrub(*years));
+                return;
+            }
             Action::Undo => self.undo(command.side),
             Action::StartOver => self.start_over(command.side),
             Action::Remove { at } => world.plates.remove_at(map.to_plan(*at), now_yr, params).is_some(),
@@ -72,16 +127,14 @@ impl Sim {
                 world.plates.drag_tip(from, to, reach, now_yr, params).is_some()
             }
             Action::FlipFault { at } => self.flip_fault(map.to_plan(*at), reach),
-            // Tools belong to the table's controls; the globe, layers and history are not of this world.
-            Action::Tool(_)
-            | Action::Mode(_)
-            | Action::Layers(_)
-            | Action::View { .. }
-            | Action::Earth
-            | Action::Scrub(_) => false,
+            // Tools belong to the table's controls; the globe and layers are not of this world.
+            Action::Tool(_) | Action::Mode(_) | Action::Layers(_) | Action::View { .. } | Action::Earth => {
+                false
+            }
         };
         if edited {
             self.state.stale = true;
+            self.depart(now_yr);
             if matches!(command.action, Action::AddArrow(_) | Action::EditArrow(_)) {
                 self.state.world.last_push_yr = now_yr;
             }
@@ -108,7 +161,8 @@ impl Sim {
 
     /// The land as the seed gives it, at time zero. Undo of that side brings the old one back.
     fn start_over(&mut self, side: Option<Side>) -> bool {
-        self.remember(side.unwrap_or(Side::South));
+        self.depart(self.state.world.time_yr);
+        self.remember(side.unwrap_or(Side::South), true);
         let world = &mut self.state.world;
         world.z = StartLand::new(world.seed).heights(&world.tin);
         world.strata = Strata::new(&[0.0], world.tin.len());
@@ -116,7 +170,8 @@ impl Sim {
         world.time_yr = 0.0;
         world.last_push_yr = 0.0;
         world.totals = Totals::default();
-        self.state.pending_yr = 0.0;
+        self.state.history.clear();
+        self.land_changed();
         true
     }
 }

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::step::Sim;
-use crate::gesture::event::{HandEvent, Leg};
+use crate::gesture::event::{HandEvent, HandId, Leg};
 use crate::mountain::residue::Residue;
 use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateSet, PlateState, TectonicField};
 use crate::units::{KM, MYR};
@@ -15,6 +16,9 @@ const ANSWER_REACH: f64 = 30.0 * KM;
 
 /// How long a fault that no longer moves stays on the map, years.
 const FAULT_YEARS: f64 = 1.0 * MYR;
+
+/// Nodes per task where each asks the field for its rate.
+const CHUNK: usize = 4096;
 
 /// What moves the land now: which plates do what, how many domes rise, and how many earlier pushes go on.
 type Drive = (Vec<(PlateId, PlateState)>, usize, usize);
@@ -50,7 +54,7 @@ impl Sim {
         if let HandEvent::Push { leg, side, .. } = event
             && !self.state.found.contains_key(leg)
         {
-            self.remember(*side);
+            self.remember(*side, false);
             self.update_uplift();
             self.state.found.insert(*leg, Arc::clone(&self.state.uplift));
         }
@@ -63,7 +67,10 @@ impl Sim {
         let applied = world
             .plates
             .apply(event, &world.map, now_yr, &self.params.mountain);
-        self.state.stale |= applied != Applied::Unchanged;
+        if applied != Applied::Unchanged {
+            self.state.stale = true;
+            self.depart(now_yr);
+        }
         if let (Some(before), Applied::Plate(id)) = (before, applied) {
             self.keep_going(&before, id);
         }
@@ -73,6 +80,27 @@ impl Sim {
             HandEvent::Push { .. } | HandEvent::Tap { .. } => world.last_push_yr = world.time_yr,
             HandEvent::PushEnd { leg } => self.judge(*leg),
             HandEvent::Rest { .. } | HandEvent::Lift { .. } | HandEvent::Retract { .. } => {}
+        }
+    }
+
+    /// Lets go of plates whose hands are not down: their contacts were withdrawn, or the land is from before they came.
+    pub(super) fn release_absent(&mut self) {
+        let hands = &self.state.hands;
+        let absent = |hand: HandId| !hands.hands().any(|view| view.hand == hand);
+        let plates = self.state.world.plates.plates().iter();
+        let ends: Vec<HandEvent> = plates
+            .filter(|plate| plate.held && absent(plate.hand))
+            .map(|plate| match plate.leg {
+                Some(leg) => HandEvent::PushEnd { leg },
+                None => HandEvent::Lift { hand: plate.hand },
+            })
+            .collect();
+        for end in ends {
+            let world = &mut self.state.world;
+            world
+                .plates
+                .apply(&end, &world.map, world.time_yr, &self.params.mountain);
+            self.state.stale = true;
         }
     }
 
@@ -86,6 +114,7 @@ impl Sim {
         if old.leg == leg || old.state(now_yr) != PlateState::Pushing {
             return;
         }
+        self.field_of = None;
         let (extent, params) = (self.state.world.map.extent(), &self.params.mountain);
         let mut uplift = |plates: &PlateSet| {
             self.tectonics
@@ -148,25 +177,49 @@ impl Sim {
         (doing.collect(), rising.count(), going_on.count())
     }
 
-    /// Computes the uplift if plates have changed, a push is spent or a dome has risen.
-    pub(super) fn update_uplift(&mut self) -> bool {
-        let drive = self.drive();
-        if !self.state.stale && drive == self.state.uplift.drive {
+    /// True where plates have changed, a push is spent or a dome has risen since the uplift was computed.
+    fn uplift_is_old(&self) -> bool {
+        self.state.stale || self.drive() != self.state.uplift.drive
+    }
+
+    /// Brings `field` and `rates` to the plates as they are now. False where they were.
+    fn compute_uplift(&mut self) -> bool {
+        let world = &self.state.world;
+        let known = |(plates, yr): &(PlateSet, f64)| *yr == world.time_yr && *plates == world.plates;
+        if self.field_of.as_ref().is_some_and(known) {
             return false;
         }
-        let state = &mut self.state;
-        state.stale = false;
-        let world = &state.world;
         let (extent, params) = (world.map.extent(), &self.params.mountain);
         self.tectonics
             .compute_into(&world.plates, extent, world.time_yr, params, &mut self.field);
         let field = &self.field;
-        let mut at_nodes: Vec<f64> = world
-            .tin
-            .positions()
-            .iter()
+        let positions = world.tin.positions().par_iter().with_min_len(CHUNK);
+        positions
             .map(|&p| field.uplift_at(p))
-            .collect();
+            .collect_into_vec(&mut self.rates);
+        self.field_of = Some((world.plates.clone(), world.time_yr));
+        true
+    }
+
+    /// Computes the uplift of the plates as they are now, where it has changed, for those who look. The land feels it
+    /// with its next step, and whether anybody looked makes no difference to it. True where it was computed.
+    pub fn refresh_uplift(&mut self) -> bool {
+        self.ahead = self.uplift_is_old();
+        self.ahead && self.compute_uplift()
+    }
+
+    /// Computes the uplift if plates have changed, a push is spent or a dome has risen.
+    pub(super) fn update_uplift(&mut self) -> bool {
+        if !self.uplift_is_old() {
+            return false;
+        }
+        self.compute_uplift();
+        self.ahead = false;
+        let drive = self.drive();
+        let (state, field) = (&mut self.state, &self.field);
+        let world = &state.world;
+        state.stale = false;
+        let mut at_nodes = self.rates.clone();
         for rate in at_nodes.iter_mut().filter(|rate| !rate.is_finite()) {
             *rate = 0.0;
             state.quarantine.uplift_nodes += 1;

@@ -4,19 +4,23 @@
 //! parameters give the same bits, for any number of threads. In each tick contacts become hand events, hand events
 //! become plates, plates become uplift, and every `erosion_dt_yr` of model time the land takes a step.
 //!
-//! Three ways lead back in time: a contact that turns out to be a palm within the revision time is *rolled back*
+//! Four ways lead back in time: a contact that turns out to be a palm within the revision time is *rolled back*
 //! (the ticks since are played again without it), *undo* restores what the last push of a side of the table found,
-//! and a step that yields a number that is none is *quarantined* (the land before it stays).
+//! *scrub* looks at a snapshot of the history, and a step that yields a number that is none is *quarantined* (the land before it stays).
 
 mod commands;
 mod drive;
+mod history;
 mod params;
+mod resume;
 mod rollback;
 mod step;
 mod view;
+mod wear;
 mod world;
 
 pub use params::SimParams;
+pub use resume::Checkpoint;
 pub use step::{Quarantine, SessionCounts, Sim, StepReport};
 pub use world::{Totals, World};
 

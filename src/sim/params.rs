@@ -26,6 +26,9 @@ pub struct SimParams {
     pub answer_m_per_yr: f64,
     /// Most memory that undo may keep, bytes. The oldest snapshots go first.
     pub undo_bytes: usize,
+    /// Most memory that the history for scrubbing may keep, bytes. When it is full every second snapshot goes; 0 keeps
+    /// no history, and then nobody can scrub.
+    pub history_bytes: usize,
 }
 
 impl Default for SimParams {
@@ -39,6 +42,7 @@ impl Default for SimParams {
             run_on_yr: 5.0 * MYR,
             answer_m_per_yr: 4e-5,
             undo_bytes: 256 << 20,
+            history_bytes: 256 << 20,
         }
     }
 }

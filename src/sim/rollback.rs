@@ -44,6 +44,12 @@ impl<S: Clone> Rollback<S> {
         }
     }
 
+    /// True when the last checkpoint is so old that input piles up behind it, as it does while no steps are taken.
+    pub(super) fn is_due(&self, played_us: i64) -> bool {
+        let last = self.checkpoints.back();
+        last.is_none_or(|(t, _)| *t <= played_us - REACH_US)
+    }
+
     /// Remembers a frame of input.
     pub(super) fn record(&mut self, frame: &InputFrame) {
         self.frames.push_back(frame.clone());

@@ -4,13 +4,16 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use super::drive::Uplift;
+use super::history::History;
+use super::resume::Checkpoint;
 use super::rollback::Rollback;
+use super::wear::Wear;
 use super::{SimParams, TICK_US, World};
 use crate::gesture::contact::{ContactKey, InputFrame, Side};
 use crate::gesture::event::{HandEvent, Leg};
 use crate::gesture::hand::{ContactStats, HandTracker};
 use crate::mountain::tectonics::TectonicReport;
-use crate::mountain::{TectonicField, Tectonics};
+use crate::mountain::{PlateSet, TectonicField, Tectonics};
 use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets};
 
 /// Numbers that were none, and what became of them. They never reach the land.
@@ -55,15 +58,17 @@ pub struct StepReport {
 pub(super) struct Snapshot {
     pub(super) side: Side,
     pub(super) world: World,
+    /// It was taken before the land started over.
+    pub(super) starts_over: bool,
 }
 
 /// All that a roll-back must restore.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     pub(super) world: World,
-    hands: HandTracker,
+    pub(super) hands: HandTracker,
     /// Ticks done.
-    tick: u64,
+    pub(super) tick: u64,
     /// Model time gone since the last erosion step, years.
     pub(super) pending_yr: f64,
     pub(super) paused: bool,
@@ -72,6 +77,7 @@ pub(super) struct State {
     /// Plates have changed since `uplift` was computed.
     pub(super) stale: bool,
     pub(super) undo: Vec<Arc<Snapshot>>,
+    pub(super) history: History,
     /// The uplift that each unfinished push found.
     pub(super) found: BTreeMap<Leg, Arc<Uplift>>,
     pub(super) counts: SessionCounts,
@@ -86,16 +92,24 @@ pub struct Sim {
     pub(super) params: SimParams,
     pub(super) state: State,
     /// Frames that wait for their tick.
-    queue: VecDeque<InputFrame>,
-    rollback: Rollback<State>,
+    pub(super) queue: VecDeque<InputFrame>,
+    pub(super) rollback: Rollback<State>,
     /// Contacts found out to be none, whatever checkpoint comes back.
-    banned: Vec<ContactKey>,
+    pub(super) banned: Vec<ContactKey>,
     pub(super) tectonics: Tectonics,
     /// Scratch of the stages.
     pub(super) field: TectonicField,
-    erosion: Erosion,
+    /// The plates and the time that `field` and `rates` were computed for.
+    pub(super) field_of: Option<(PlateSet, f64)>,
+    /// Uplift of `field` at each node, m/yr; not yet looked through for numbers that are none.
+    pub(super) rates: Vec<f64>,
+    /// `rates` are newer than the uplift that the land has felt.
+    pub(super) ahead: bool,
+    pub(super) erosion: Erosion,
     /// The land before the step, for the quarantine.
-    before: Vec<f64>,
+    pub(super) before: Vec<f64>,
+    pub(super) wear: Wear,
+    pub(super) land_revision: u64,
 }
 
 impl Sim {
@@ -103,7 +117,7 @@ impl Sim {
     pub fn new(world: World, params: SimParams) -> Self {
         let field = TectonicField::still(world.map.extent(), &params.mountain);
         let still = Uplift::still(&field, world.tin.len());
-        let state = State {
+        let mut state = State {
             hands: HandTracker::new(params.gesture, world.map.size_mm()),
             tick: 0,
             pending_yr: 0.0,
@@ -112,25 +126,15 @@ impl Sim {
             uplift: Arc::new(still),
             stale: false,
             undo: Vec::new(),
+            history: History::default(),
             found: BTreeMap::new(),
             counts: SessionCounts::default(),
             quarantine: Quarantine::default(),
             last_motion: None,
             world,
         };
-        let mut rollback = Rollback::new();
-        rollback.checkpoint(-(TICK_US as i64), &state);
-        Self {
-            erosion: Erosion::new(&state.world.tin),
-            params,
-            state,
-            queue: VecDeque::new(),
-            rollback,
-            banned: Vec::new(),
-            tectonics: Tectonics::default(),
-            field,
-            before: Vec::new(),
-        }
+        state.history.record(&state.world, params.history_bytes);
+        Self::resume(Checkpoint { params, state })
     }
 
     /// The world as it is.
@@ -170,12 +174,19 @@ impl Sim {
 
     /// Water over the land as it is: receivers, drainage, lakes.
     pub fn flow(&self) -> Flow {
-        let (tin, z) = (&self.state.world.tin, &self.state.world.z);
-        let fixed = self.params.erosion.edges == Edges::Fixed;
-        let outlets = if fixed { Outlets::Border } else { Outlets::Lowest };
-        let mut flow = Flow::new(tin);
-        flow.route(tin, z, outlets, None);
+        let mut flow = Flow::new(&self.state.world.tin);
+        self.route(&mut flow);
         flow
+    }
+
+    /// The same into memory for this land's nodes, which is reused.
+    pub fn route(&self, flow: &mut Flow) {
+        let world = &self.state.world;
+        let outlets = match self.params.erosion.edges {
+            Edges::Fixed => Outlets::Border,
+            Edges::Free => Outlets::Lowest,
+        };
+        flow.route(&world.tin, &world.z, outlets, None);
     }
 
     /// What the contacts were.
@@ -259,6 +270,7 @@ impl Sim {
             }
             self.apply(event);
         }
+        self.release_absent();
         let mut erosion_steps = 0;
         let mut uplift_changed = false;
         if !self.state.paused && (self.runs() || self.state.hands.hands().next().is_some()) {
@@ -271,7 +283,7 @@ impl Sim {
             }
         }
         self.state.tick += 1;
-        if erosion_steps > 0 {
+        if erosion_steps > 0 || self.rollback.is_due(now_us as i64) {
             self.rollback.checkpoint(now_us as i64, &self.state);
         }
         self.report(erosion_steps, uplift_changed)
@@ -301,6 +313,8 @@ impl Sim {
         };
         let counts = self.state.counts;
         self.state = state;
+        self.ahead = false;
+        self.land_revision += 1;
         self.state.counts.rolled_back = counts.rolled_back + 1;
         for &key in &self.banned {
             self.state.hands.ban(key);
@@ -319,6 +333,8 @@ impl Sim {
 
     /// One erosion step of the land.
     fn step_land(&mut self) {
+        self.depart(self.state.world.time_yr);
+        self.land_revision += 1;
         let state = &mut self.state;
         let world = &mut state.world;
         let dt_yr = self.params.erosion_dt_yr;
@@ -334,14 +350,17 @@ impl Sim {
         world.time_yr += dt_yr;
         if world.z.iter().any(|z| !z.is_finite()) {
             world.z.clone_from(&self.before);
+            self.wear.forget();
             state.quarantine.steps += 1;
             return;
         }
+        self.wear.learn(&self.before, &world.z, uplift, dt_yr);
         if world.strata.advance(&[uplift], dt_yr).is_err() {
             state.quarantine.steps += 1;
         }
         world.totals.steps += 1;
         world.totals.uplifted_m3 += sums.uplifted_m3;
         world.totals.eroded_m3 += sums.fluvial_m3 + sums.landslide_m3;
+        self.keep_history();
     }
 }

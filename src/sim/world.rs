@@ -96,4 +96,14 @@ impl World {
     pub fn snapshot_bytes(&self) -> usize {
         size_of_val(self.z.as_slice()) * (1 + self.strata.interfaces())
     }
+
+    /// Memory of what is left of earlier pushes here and not in `before`, bytes: snapshots share the rest.
+    pub(super) fn residue_bytes_beyond(&self, before: Option<&Self>) -> usize {
+        let known = before.map_or(&[][..], |before| before.plates.residues());
+        let residues = self.plates.residues().iter().map(|residue| &residue.uplift);
+        residues
+            .filter(|field| !known.iter().any(|other| Arc::ptr_eq(field, &other.uplift)))
+            .map(|field| size_of_val(field.data.as_slice()))
+            .sum()
+    }
 }

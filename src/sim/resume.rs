@@ -1,0 +1,87 @@
+//! A session that goes on from an earlier moment, or beside itself.
+
+use std::collections::VecDeque;
+
+use super::rollback::Rollback;
+use super::step::{Sim, State};
+use super::wear::Wear;
+use super::{SimParams, TICK_US, World};
+use crate::gesture::contact::{ContactEvent, InputFrame, Phase};
+use crate::mountain::{TectonicField, Tectonics};
+use crate::terrain::Erosion;
+
+/// All that a session is at one moment: plain data, cheap to take and to keep. Input that waits for its tick is not part
+/// of it.
+#[derive(Clone, Debug)]
+pub struct Checkpoint {
+    pub(super) params: SimParams,
+    pub(super) state: State,
+}
+
+impl Checkpoint {
+    /// The same moment at a later session time: what lies between is not played. For going on after a fault, with input
+    /// that is of now.
+    #[must_use]
+    pub fn at_tick(mut self, tick: u64) -> Self {
+        self.state.tick = self.state.tick.max(tick);
+        self
+    }
+
+    /// The world of that moment.
+    pub fn world(&self) -> &World {
+        &self.state.world
+    }
+}
+
+impl Sim {
+    /// The session as it is.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            params: self.params.clone(),
+            state: self.state.clone(),
+        }
+    }
+
+    /// The session of `checkpoint` in memory of its own: it goes on as the other one did, to the bit.
+    pub fn resume(checkpoint: Checkpoint) -> Self {
+        let Checkpoint { params, state } = checkpoint;
+        let mut rollback = Rollback::new();
+        rollback.checkpoint((state.tick * TICK_US) as i64 - TICK_US as i64, &state);
+        Self {
+            tectonics: Tectonics::default(),
+            field: TectonicField::still(state.world.map.extent(), &params.mountain),
+            field_of: None,
+            rates: Vec::new(),
+            ahead: false,
+            erosion: Erosion::new(&state.world.tin),
+            before: Vec::new(),
+            wear: Wear::default(),
+            land_revision: 0,
+            queue: VecDeque::new(),
+            banned: Vec::new(),
+            rollback,
+            params,
+            state,
+        }
+    }
+
+    /// Withdraws every contact that is down, at the next tick: what they do is over, and if it had only just begun it
+    /// is undone.
+    pub fn cancel_contacts(&mut self) {
+        let withdrawn = |contact: &_| ContactEvent {
+            phase: Phase::Cancel,
+            contact: *contact,
+        };
+        let events = self
+            .state
+            .hands
+            .contacts()
+            .map(|(contact, ..)| withdrawn(contact))
+            .collect();
+        self.queue.push_front(InputFrame {
+            t_us: self.state.tick * TICK_US,
+            events,
+            commands: Vec::new(),
+        });
+    }
+}
