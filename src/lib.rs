@@ -14,6 +14,7 @@
 //! | [`terrain`] | TIN, flow routing with lakes, stream power, landslides | plates, gestures, window |
 //! | [`sim`] | owns the world: tick, parameters, undo, roll-back, quarantine | window, clock, files |
 //! | [`surface`] | what a tick yields for eyes and files: plain data | who made it |
+//! | [`survey`] | a land on its nodes → surface | plates, gestures, window |
 //! | [`live`] | the session's thread: input in without loss, the newest surface out, panics survived | window, clock |
 //! | [`instrument`] | whose contact is it: land, edit tool or control; the controls of each side | worlds, window, clock |
 //! | [`kiosk`] | attract, invite, play, idle, reset; staff access | worlds, window, clock, files |
@@ -55,6 +56,8 @@ pub mod terrain;
 pub mod sim;
 
 pub mod surface;
+
+pub mod survey;
 
 pub mod live;
 

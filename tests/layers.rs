@@ -68,6 +68,22 @@ const RULES: &[Rule] = &[
         reason: "a surface is plain data",
     },
     Rule {
+        module: "survey",
+        forbidden: &[
+            "crate::gesture",
+            "crate::mountain",
+            "crate::sim",
+            "crate::picture",
+            "crate::export",
+        ],
+        reason: "a land on its nodes is all that is surveyed",
+    },
+    Rule {
+        module: "live",
+        forbidden: &["crate::picture", "crate::export", "crate::input", "crate::cli"],
+        reason: "the session is looked at, it does not look",
+    },
+    Rule {
         module: "sim",
         forbidden: &["crate::picture", "crate::export", "crate::input", "crate::cli"],
         reason: "the session is looked at, it does not look",
@@ -105,12 +121,13 @@ const RULES: &[Rule] = &[
 ];
 
 /// Modules that must run without window, card, clock and environment: all but the command line.
-const CORE: [&str; 9] = [
-    "units", "gesture", "mountain", "terrain", "surface", "sim", "report", "picture", "input",
+const CORE: [&str; 11] = [
+    "units", "gesture", "mountain", "terrain", "surface", "survey", "sim", "live", "report", "picture",
+    "input",
 ];
 /// Modules that must not touch files: they read and write through `Read` and `Write`, or not at all.
-const WITHOUT_FILES: [&str; 7] = [
-    "units", "gesture", "mountain", "terrain", "surface", "sim", "report",
+const WITHOUT_FILES: [&str; 9] = [
+    "units", "gesture", "mountain", "terrain", "surface", "survey", "sim", "live", "report",
 ];
 
 /// Code of a file without comments, doc comments and its test module.

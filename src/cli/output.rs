@@ -14,15 +14,14 @@ use crate::export::height16::Height16;
 use crate::export::{Mesh, OutDir, exr, geojson, glb, ply};
 use crate::picture::{MapStyle, relief_map};
 use crate::sim::Sim;
-use crate::surface::rivers::{self, FlowGraph, River};
+use crate::surface::rivers::{self, River};
 use crate::surface::{FaultTrace, PlateMark, Raster, Surface};
-use crate::terrain::{Flow, NodeId, Tin, TinRaster};
+use crate::survey::{Ground, Survey, Water};
+use crate::terrain::{Flow, Tin};
 use crate::units::KM;
 
 /// Drainage area from which a stream counts as a river in `rivers.geojson`, m².
 const RIVER_AREA: f64 = 10.0 * KM * KM;
-/// Drainage area from which a stream is drawn on the map, m².
-const DRAWN_RIVER_AREA: f64 = 15.0 * KM * KM;
 
 /// How long the parts of a run took.
 #[derive(Debug)]
@@ -95,14 +94,13 @@ impl LandFiles<'_> {
         picture: PictureChoice,
         timings: &mut Timings,
     ) -> Result<(), Failure> {
-        let raster = TinRaster::new(self.tin, size as usize, rows(self.tin, size));
         let title = self.title.to_owned();
         let (tin, z, uplift, flow, k) = (self.tin, self.z, self.uplift, self.flow, self.k);
-        let water = Water::new(&self);
-        let rivers = rivers::trace(water.graph(&self), RIVER_AREA);
-        let uplift_map = raster.linear(uplift);
-        let drainage_map = raster.linear(flow.drainage());
-        let surface = self.surface(&raster, &water);
+        let water = Water::new(self.ground());
+        let rivers = rivers::trace(water.graph(self.ground()), RIVER_AREA);
+        let mut survey = Survey::new(tin, size as usize);
+        let uplift_map = survey.raster().linear(uplift);
+        let surface = self.surface(&mut survey);
         timings.lap("rasters");
 
         let texture = match picture {
@@ -126,7 +124,7 @@ impl LandFiles<'_> {
         };
         timings.lap("picture");
 
-        write_height_maps(out, &surface.height, &uplift_map, &drainage_map)?;
+        write_height_maps(out, &surface.height, &uplift_map, &surface.drainage.data)?;
         timings.lap("height_maps");
         let mesh = Mesh {
             positions: tin.positions(),
@@ -136,7 +134,7 @@ impl LandFiles<'_> {
         let values = ply::NodeValues {
             drainage: flow.drainage(),
             uplift,
-            receivers: &water.receivers,
+            receivers: water.receivers(),
             layers: &vec![0; tin.len()],
             erodibility: k,
         };
@@ -151,60 +149,22 @@ impl LandFiles<'_> {
         Ok(())
     }
 
-    fn surface(self, raster: &TinRaster, water: &Water) -> Surface {
-        let field = |data| Raster {
-            width: raster.width(),
-            height: raster.height(),
-            extent: self.tin.extent(),
-            data,
-        };
+    fn ground(&self) -> Ground<'_> {
+        Ground {
+            tin: self.tin,
+            z: self.z,
+            flow: self.flow,
+        }
+    }
+
+    fn surface(self, survey: &mut Survey) -> Surface {
+        let bare = survey.surface(self.ground(), self.elapsed_yr);
         Surface {
-            height: field(raster.smooth(self.tin, self.z)),
-            lake_depth: field(raster.linear(&water.lake_depth)),
-            drainage: field(raster.linear(self.flow.drainage())),
-            spacing: self.tin.spacing(),
-            rivers: rivers::drawn(water.graph(&self), DRAWN_RIVER_AREA),
             plates: self.marks.plates,
             faults: self.marks.faults,
-            elapsed_yr: self.elapsed_yr,
+            ..bare
         }
     }
-}
-
-/// Water as the writers want it.
-struct Water {
-    receivers: Vec<u32>,
-    /// Metres; 0 where it is dry.
-    lake_depth: Vec<f64>,
-    lake: Vec<bool>,
-}
-
-impl Water {
-    fn new(land: &LandFiles<'_>) -> Self {
-        let lakes = land.flow.lakes();
-        let depth = |(i, &z): (usize, &f64)| lakes.level(NodeId::new(i), z) - z;
-        let lake_depth: Vec<f64> = land.z.iter().enumerate().map(depth).collect();
-        Self {
-            receivers: land.flow.receivers().iter().map(|node| node.0).collect(),
-            lake: lake_depth.iter().map(|&depth| depth > 0.0).collect(),
-            lake_depth,
-        }
-    }
-
-    fn graph<'b>(&'b self, land: &'b LandFiles<'_>) -> FlowGraph<'b> {
-        FlowGraph {
-            positions: land.tin.positions(),
-            receivers: &self.receivers,
-            drainage: land.flow.drainage(),
-            lake: &self.lake,
-        }
-    }
-}
-
-/// Rows that make cells square for `columns` columns.
-fn rows(tin: &Tin, columns: u32) -> usize {
-    let extent = tin.extent();
-    ((f64::from(columns) * extent.height / extent.width).round() as usize).max(1)
 }
 
 fn map_png(surface: &Surface, style: &MapStyle) -> Result<Vec<u8>, Failure> {
@@ -280,16 +240,14 @@ pub(super) fn land_of<'a>(sim: &'a Sim, flow: &'a Flow, k: &'a [f64], title: &'a
 
 /// Draws the map of a running session into `out` as `name`.
 pub(super) fn draw_frame(out: &OutDir, name: &str, sim: &Sim, title: &str, size: u32) -> Result<(), Failure> {
-    let tin = &sim.world().tin;
-    let raster = TinRaster::new(tin, size as usize, rows(tin, size));
+    let mut survey = Survey::new(&sim.world().tin, size as usize);
     let flow = sim.flow();
     let land = land_of(sim, &flow, &[], title);
-    let water = Water::new(&land);
     let style = MapStyle {
         title: title.to_owned(),
         ..MapStyle::default()
     };
-    let png = map_png(&land.surface(&raster, &water), &style)?;
+    let png = map_png(&land.surface(&mut survey), &style)?;
     out.write(name, |w| w.write_all(&png))
         .map(drop)
         .map_err(Failure::other)

@@ -43,6 +43,9 @@ pub const MAX_YEARS: f64 = 1e9;
 /// Most characters of the name of a layer preset.
 pub const MAX_PRESET_CHARS: usize = 64;
 
+/// How near to a tip or a fault an edit must be, table mm: the width of a finger and a bit.
+pub const REACH_MM: f64 = 25.0;
+
 /// Least and greatest magnification of the globe.
 pub const ZOOM_RANGE: (f64, f64) = (0.01, 100.0);
 

@@ -1,1 +1,153 @@
 //! The graphics card: adapter, device, and what happens when it is lost.
+//!
+//! A [`Gpu`] is one device from the day it was found to the day it is lost. Nothing repairs a lost device: everything
+//! on it is made anew, and each new one has a higher [`Gpu::generation`].
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Interfaces that are asked first, and the one that is asked if they have nothing.
+const BACKENDS: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
+
+/// Devices made so far in this process.
+static GENERATIONS: AtomicU64 = AtomicU64::new(0);
+
+/// Why there is no graphics card to draw with.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter answers.
+    #[error("no graphics adapter (Vulkan, Metal, DirectX 12 or OpenGL): {0}")]
+    NoAdapter(String),
+    /// There is an adapter, and it gives no device.
+    #[error("the graphics adapter {0} gives no device: {1}")]
+    NoDevice(String, String),
+    /// The window's surface cannot be drawn into.
+    #[error("the window cannot be drawn into: {0}")]
+    Surface(String),
+    /// The card refused some work.
+    #[error("the graphics card refused: {0}")]
+    Refused(String),
+}
+
+/// One graphics device and its queue.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The adapter.
+    pub adapter: wgpu::Adapter,
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What the adapter says of itself.
+    pub info: wgpu::AdapterInfo,
+    generation: u64,
+    lost: Arc<AtomicBool>,
+}
+
+/// An entry to all interfaces of this machine. GL can show pictures only on the `display` that is named here.
+pub fn instance(display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wgpu::Instance {
+    let descriptor = wgpu::InstanceDescriptor {
+        display,
+        ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+    };
+    wgpu::Instance::new(descriptor)
+}
+
+impl Gpu {
+    /// The best device that needs no window: a graphics card if there is one, else a software adapter.
+    ///
+    /// # Errors
+    /// When no adapter gives a device.
+    pub fn offscreen() -> Result<Self, GpuError> {
+        Self::find(&instance(None), None)
+    }
+
+    /// The best device that can draw into `surface`.
+    ///
+    /// # Errors
+    /// When no adapter can.
+    pub fn for_window(instance: &wgpu::Instance, surface: &wgpu::Surface<'_>) -> Result<Self, GpuError> {
+        Self::find(instance, Some(surface))
+    }
+
+    fn find(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, GpuError> {
+        let mut fault = GpuError::NoAdapter("none answers".to_owned());
+        for backends in BACKENDS {
+            let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+            if let Some(surface) = surface {
+                adapters.retain(|adapter| adapter.is_surface_supported(surface));
+            }
+            adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+            for adapter in adapters {
+                match Self::open(adapter) {
+                    Ok(gpu) => return Ok(gpu),
+                    Err(error) => fault = error,
+                }
+            }
+        }
+        Err(fault)
+    }
+
+    fn open(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let wanted = wgpu::Features::FLOAT32_FILTERABLE;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("orogen"),
+            required_features: adapter.features() & wanted,
+            required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| GpuError::NoDevice(info.name.clone(), error.to_string()))?;
+        let lost = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, why| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                tracing::error!("the graphics device is lost: {why}");
+            }
+            flag.store(true, Ordering::Release);
+        });
+        let flag = Arc::clone(&lost);
+        device.on_uncaptured_error(Arc::new(move |error| {
+            tracing::error!("graphics: {error}");
+            // What the card had no memory for is not there when it is used: begin anew.
+            if matches!(error, wgpu::Error::OutOfMemory { .. }) {
+                flag.store(true, Ordering::Release);
+            }
+        }));
+        Ok(Self {
+            adapter,
+            device,
+            queue,
+            info,
+            generation: GENERATIONS.fetch_add(1, Ordering::Relaxed) + 1,
+            lost,
+        })
+    }
+
+    /// True once the device is gone: nothing it holds can be used any more.
+    pub fn lost(&self) -> bool {
+        self.lost.load(Ordering::Acquire)
+    }
+
+    /// Which device of this process it is, from 1.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// True if there is no graphics card behind it, only processor cores.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+}
+
+/// Cards first, then what sits beside the processor, software last.
+fn rank(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}

@@ -12,6 +12,12 @@
 
 mod control;
 mod deed;
+mod edit;
+mod layout;
+mod press;
+mod speed;
+mod table;
 
 pub use control::{ControlId, ControlKind, ControlView};
 pub use deed::{Deed, EditView, Editing, Key, Route, Scene};
+pub use table::{Instrument, InstrumentParams};

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 /// Linear light of an sRGB colour given as `0xRRGGBB` (IEC 61966-2-1).
-pub(super) fn linear(hex: u32) -> Vec3 {
+pub(crate) fn linear(hex: u32) -> Vec3 {
     let channel = |shift: u32| {
         let v = ((hex >> shift) & 0xff) as f32 / 255.0;
         if v <= 0.04045 {
@@ -16,7 +16,7 @@ pub(super) fn linear(hex: u32) -> Vec3 {
 }
 
 /// Linear light → sRGB bytes by table.
-pub(super) struct Encoder {
+pub(crate) struct Encoder {
     table: Vec<u8>,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Encoder {
 const STEPS: usize = 1 << 14;
 
 impl Encoder {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let table = (0..=STEPS)
             .map(|i| {
                 let v = i as f32 / STEPS as f32;
@@ -40,14 +40,14 @@ impl Encoder {
     }
 
     /// sRGB bytes of linear light, clipped to what can be shown.
-    pub(super) fn encode(&self, colour: Vec3) -> [u8; 3] {
+    pub(crate) fn encode(&self, colour: Vec3) -> [u8; 3] {
         let steps = (colour.clamp(Vec3::ZERO, Vec3::ONE) * STEPS as f32 + 0.5).to_array();
         steps.map(|step| self.table[step as usize])
     }
 }
 
 /// Colours along a scale, mixed between the neighbouring entries. Below the first and above the last they stay.
-pub(super) struct Ramp {
+pub(crate) struct Ramp {
     entries: Vec<(f32, Vec3)>,
 }
 
@@ -59,7 +59,7 @@ impl Ramp {
         }
     }
 
-    pub(super) fn at(&self, value: f32) -> Vec3 {
+    pub(crate) fn at(&self, value: f32) -> Vec3 {
         let after = self.entries.partition_point(|entry| entry.0 <= value);
         match (
             after.checked_sub(1).map(|i| self.entries[i]),

@@ -9,25 +9,25 @@ use super::noise;
 /// Height of the upper edge of the forest, metres: that of the Southern Alps of New Zealand, a young range between two
 /// plates as those of the table are (Wardle 2008, "New Zealand forest to alpine
 /// transitions in global context", Arct. Antarct. Alp. Res. 40).
-const TREE_LINE: f32 = 1300.0;
+pub(crate) const TREE_LINE: f32 = 1300.0;
 
 /// Height above which snow lies all year, metres: there it is 1,600 m in the wet west and 2,200 m in the dry east
 /// (Chinn 1995, "Glacier fluctuations in the Southern Alps of New Zealand", Arctic and Alpine Research 27).
-const SNOW_LINE: f32 = 2050.0;
+pub(crate) const SNOW_LINE: f32 = 2050.0;
 
 /// The colours of the map, in linear light. Greens are never loud, rock is warm, shadows come from the light.
-pub(super) struct Palette {
+pub(crate) struct Palette {
     lowland: f32,
-    open: Ramp,
-    wood: Ramp,
-    rock: Ramp,
-    scree: Vec3,
-    snow: Vec3,
-    water_meadow: Vec3,
-    shallow: Vec3,
-    deep: Vec3,
-    shore: Vec3,
-    haze: Vec3,
+    pub(crate) open: Ramp,
+    pub(crate) wood: Ramp,
+    pub(crate) rock: Ramp,
+    pub(crate) scree: Vec3,
+    pub(crate) snow: Vec3,
+    pub(crate) water_meadow: Vec3,
+    pub(crate) shallow: Vec3,
+    pub(crate) deep: Vec3,
+    pub(crate) shore: Vec3,
+    pub(crate) haze: Vec3,
 }
 
 /// Variation of the cover over several kilometres, at a place (east, north, metres). It is smooth enough to be
@@ -38,7 +38,7 @@ pub(super) fn broad_noise((east, north): (f32, f32)) -> f32 {
 
 impl Palette {
     /// For land whose plains lie at about `lowland` metres.
-    pub(super) fn new(lowland: f32) -> Self {
+    pub(crate) fn new(lowland: f32) -> Self {
         Self {
             lowland,
             open: Ramp::new(&[

@@ -10,14 +10,14 @@ use super::horizon::{horizon, sky_view};
 use super::noise;
 
 /// Height of the sun over the horizon, radians.
-const SUN_ELEVATION: f32 = 0.70;
+pub(crate) const SUN_ELEVATION: f32 = 0.70;
 
 /// Where the sun stands, radians clockwise from north.
 const SUN_AZIMUTH: f64 = 315.0 / 180.0 * std::f64::consts::PI;
 
 /// Sun for cast shadows: lower than the one for slopes would throw them too far, so mountains are shaded by one sun
 /// and cast shadows by the lower rim of a wide one. Tangents of the elevations between which the light fades.
-const PENUMBRA: (f32, f32) = (0.36, 0.78);
+pub(crate) const PENUMBRA: (f32, f32) = (0.36, 0.78);
 
 /// Azimuths the sky is looked at.
 const SKY_DIRECTIONS: usize = 12;

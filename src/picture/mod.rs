@@ -4,18 +4,18 @@
 //! from the north-west, cool shadows, quiet greens, contrast that grows towards the summits. Everything is computed
 //! on the CPU, row by row and in parallel, and does not depend on the number of threads.
 
-mod colour;
-mod cover;
+pub(crate) mod colour;
+pub(crate) mod cover;
 mod field;
 mod frame;
 mod horizon;
 mod ink;
 mod lettering;
-mod light;
+pub(crate) mod light;
 mod noise;
-mod paint;
+pub(crate) mod paint;
 mod style;
-mod water;
+pub(crate) mod water;
 
 pub use frame::MapFrame;
 pub(crate) use lettering::round_below;

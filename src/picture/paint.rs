@@ -12,7 +12,7 @@ use super::{MapFrame, MapStyle, cover, opaque};
 use crate::surface::Surface;
 
 /// Heights that count as summits at least and at most, metres: hills are not painted as if they were the Alps.
-const SUMMITS: (f32, f32) = (1200.0, 3600.0);
+pub(crate) const SUMMITS: (f32, f32) = (1200.0, 3600.0);
 
 /// Heights on the pixels. The outermost nodes of a mesh are held by its border condition and make a rim around the
 /// land: the land just inside goes on to the edge in their place.
@@ -36,9 +36,9 @@ fn ground(surface: &Surface, width: usize, height: usize, spacing: f32) -> Field
 }
 
 /// Height of the plains: a seventh of the land lies lower. Land that is all mountains keeps the sea's.
-fn lowland(ground: &Field) -> f32 {
+pub(crate) fn lowland(ground: &[f32]) -> f32 {
     const EVERY: usize = 97;
-    let mut heights: Vec<f32> = ground.data.iter().copied().step_by(EVERY).collect();
+    let mut heights: Vec<f32> = ground.iter().copied().step_by(EVERY).collect();
     let seventh = heights.len() / 7;
     let (_, lowland, _) = heights.select_nth_unstable_by(seventh, f32::total_cmp);
     lowland.clamp(-400.0, 400.0)
@@ -61,7 +61,7 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
     let courses = water::courses(surface, &relief, frame);
     let floodplain = water::floodplain(&courses, frame);
     let rivers = Rivers::new(&courses, frame)?;
-    let palette = Palette::new(lowland(&ground));
+    let palette = Palette::new(lowland(&ground.data));
     let encoder = Encoder::new();
     let summit = ground
         .data

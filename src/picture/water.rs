@@ -42,7 +42,7 @@ impl Lakes {
 
 /// Width of a river of some drainage area (m²) on a map 1000 pixels high, pixels: hydraulic geometry's square root
 /// (Leopold & Maddock 1953) would make brooks vanish beside streams, so maps flatten it.
-fn drawn_width(drainage: f64) -> f64 {
+pub(crate) fn drawn_width(drainage: f64) -> f64 {
     let km2 = drainage / (KM * KM);
     (0.54 * (km2.max(0.1) / 20.0).powf(0.31)).min(2.9)
 }

@@ -1,1 +1,22 @@
 //! Surface → shaded land, in plan and in perspective, on the graphics card.
+//!
+//! What does not depend on the eye (shape, light, colours) is computed once for each step of the land's growth, into
+//! a *sheet* as fine as the window, and only laid on the heights in each frame; on a software adapter in strips, so
+//! that a frame stays cheap while the land moves. New lands are mixed in over a few frames: nothing pops.
+//!
+//! The colours are those of the printed map ([`crate::picture`]).
+
+mod camera;
+mod growth;
+mod land;
+pub mod layout;
+mod offscreen;
+mod passes;
+mod quality;
+mod upload;
+
+pub use camera::{Camera, Oblique, plan_rect};
+pub use land::{LandRenderer, LandStyle};
+pub use layout::LightQuality;
+pub use offscreen::picture;
+pub use quality::RenderQuality;

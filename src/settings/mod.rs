@@ -28,6 +28,12 @@ pub const VERSION: u64 = 1;
 /// Fewest and most digits of the staff's PIN.
 pub const PIN_DIGITS: (usize, usize) = (4, 8);
 
+/// Size of the staff's corner along both edges, mm.
+pub const CORNER_MM: f64 = 60.0;
+
+/// The same as a part of the table's short side, where that is less.
+const CORNER_PART: f64 = 0.12;
+
 /// All settings, by the sections of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -229,6 +235,12 @@ impl Corner {
         ("south-west", Self::SouthWest),
         ("south-east", Self::SouthEast),
     ];
+
+    /// True for places (mm) that are the corner's on a table of `size_mm`: within [`CORNER_MM`], less on small tables.
+    pub fn holds(self, place: DVec2, size_mm: DVec2) -> bool {
+        let reach = CORNER_MM.min(CORNER_PART * size_mm.min_element());
+        (place - self.position(size_mm)).abs().max_element() <= reach
+    }
 
     /// Where it is on a table of `size_mm`.
     pub fn position(self, size_mm: DVec2) -> DVec2 {

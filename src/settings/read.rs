@@ -33,7 +33,7 @@ impl Settings {
             let before = &bytes[..fault.at.min(bytes.len())];
             SettingsError {
                 name: name.to_owned(),
-                line: 1 + before.iter().filter(|&&b| b == b'\n').count(),
+                line: before.split(|&b| b == b'\n').count(),
                 problem: one_line(&fault.problem),
             }
         })

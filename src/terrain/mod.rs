@@ -26,6 +26,7 @@ pub use landslide::Landslides;
 pub use priority_flood::priority_flood;
 pub use raster::TinRaster;
 pub use resample::resample;
+pub use smooth::SmoothSheet;
 pub use start::StartLand;
 pub use stream_power::{Network, StreamPower};
 pub use tin::{Border, Link, MAX_NODES, MIN_POISSON_NODES, NodeId, Tin, TinError};

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::smooth::{Patch, patches};
+use super::smooth::SmoothSheet;
 use super::tin::Tin;
 use crate::units::Extent;
 
@@ -82,11 +82,18 @@ impl TinRaster {
 
     /// Nodal values interpolated linearly in each triangle: exact for linear fields (to single precision).
     pub fn linear(&self, values: &[f64]) -> Vec<f32> {
-        self.map_rows(|sample| {
+        let mut pixels = Vec::new();
+        self.linear_into(values, &mut pixels);
+        pixels
+    }
+
+    /// The same into memory that is reused: `pixels` gets one value per pixel.
+    pub fn linear_into(&self, values: &[f64], pixels: &mut Vec<f32>) {
+        self.map_rows(pixels, |sample| {
             let [a, b, c] = self.triangles[sample.triangle as usize].map(|k| values[k as usize] as f32);
             let [u, v] = sample.weights;
             c + u * (a - c) + v * (b - c)
-        })
+        });
     }
 
     /// Nodal values interpolated by a surface with continuous slopes, for shading.
@@ -94,12 +101,21 @@ impl TinRaster {
     /// Exact at the nodes and for linear fields; see `Patch` for the scheme. `tin` is the one the raster was made
     /// for.
     pub fn smooth(&self, tin: &Tin, values: &[f64]) -> Vec<f32> {
-        let patches: Vec<Patch> = patches(tin, values);
-        self.map_rows(|sample| patches[sample.triangle as usize].height(sample.weights))
+        let mut pixels = Vec::new();
+        self.smooth_into(tin, values, &mut SmoothSheet::default(), &mut pixels);
+        pixels
     }
 
-    fn map_rows(&self, value: impl Fn(Sample) -> f32 + Sync) -> Vec<f32> {
-        let mut pixels = vec![0.0; self.samples.len()];
+    /// The same into memory that is reused: `pixels` gets one value per pixel.
+    pub fn smooth_into(&self, tin: &Tin, values: &[f64], sheet: &mut SmoothSheet, pixels: &mut Vec<f32>) {
+        let patches = sheet.lay(tin, values);
+        self.map_rows(pixels, |sample| {
+            patches[sample.triangle as usize].height(sample.weights)
+        });
+    }
+
+    fn map_rows(&self, pixels: &mut Vec<f32>, value: impl Fn(Sample) -> f32 + Sync) {
+        pixels.resize(self.samples.len(), 0.0);
         let row = self.width.max(1);
         pixels
             .par_chunks_mut(row)
@@ -109,7 +125,6 @@ impl TinRaster {
                     *pixel = value(sample);
                 }
             });
-        pixels
     }
 
     fn pixel_size(&self) -> DVec2 {

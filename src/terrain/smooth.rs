@@ -66,18 +66,29 @@ impl Patch {
     }
 }
 
-/// The patches of all triangles through nodal `values`.
-pub(super) fn patches(tin: &Tin, values: &[f64]) -> Vec<Patch> {
-    let slopes: Vec<DVec2> = (0..tin.len())
-        .into_par_iter()
-        .with_min_len(CHUNK)
-        .map(|i| nodal_slope(tin, NodeId::new(i), values))
-        .collect();
-    tin.triangles()
-        .par_iter()
-        .with_min_len(CHUNK)
-        .map(|&triangle| Patch::new(triangle.map(NodeId), tin, values, &slopes))
-        .collect()
+/// The patches of a smooth surface, in memory that is reused from one surface to the next.
+#[derive(Clone, Debug, Default)]
+pub struct SmoothSheet {
+    slopes: Vec<DVec2>,
+    patches: Vec<Patch>,
+}
+
+impl SmoothSheet {
+    /// Lays the sheet through nodal `values`: a patch for each triangle.
+    pub(super) fn lay(&mut self, tin: &Tin, values: &[f64]) -> &[Patch] {
+        (0..tin.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|i| nodal_slope(tin, NodeId::new(i), values))
+            .collect_into_vec(&mut self.slopes);
+        let slopes = &self.slopes;
+        tin.triangles()
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&triangle| Patch::new(triangle.map(NodeId), tin, values, slopes))
+            .collect_into_vec(&mut self.patches);
+        &self.patches
+    }
 }
 
 /// Slope at a node: the plane through it that fits its neighbours best (least squares, weights 1/d²), flattened

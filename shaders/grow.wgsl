@@ -1,0 +1,25 @@
+// The land as drawn grows towards the land as it is.
+
+@group(0) @binding(1) var drawn_height: texture_2d<f32>;
+@group(0) @binding(2) var drawn_water: texture_2d<f32>;
+@group(0) @binding(3) var new_height: texture_2d<f32>;
+@group(0) @binding(4) var new_water: texture_2d<f32>;
+
+struct Grown {
+    // Metres.
+    @location(0) height: f32,
+    // Lake depth and drainage, as parts of what a byte holds.
+    @location(1) water: vec2<f32>,
+}
+
+@fragment
+fn grow(@builtin(position) position: vec4<f32>) -> Grown {
+    let at = vec2<i32>(position.xy);
+    // The outermost nodes are held by the border; the land just inside goes on to the edge in their place.
+    let rim = vec2<i32>(i32(ground.rim));
+    let inside = clamp(at, rim, vec2<i32>(ground.grid) - 1 - rim);
+    var grown: Grown;
+    grown.height = mix(textureLoad(drawn_height, at, 0).x, textureLoad(new_height, inside, 0).x, ground.blend);
+    grown.water = mix(textureLoad(drawn_water, at, 0).xy, textureLoad(new_water, at, 0).xy, ground.blend);
+    return grown;
+}

@@ -1,0 +1,159 @@
+//! What is shared with the shaders: uniforms, instances and constants. `tests/render_shaders.rs` compares the layouts.
+
+use std::fmt::Write as _;
+
+use bytemuck::{Pod, Zeroable};
+
+/// As `Ground` in `shaders/ground.wgsl`, which says what the fields mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the shader's own struct says it")]
+pub struct Ground {
+    pub extent: [f32; 2],
+    pub grid: [f32; 2],
+    pub sheet: [f32; 2],
+    pub spacing: f32,
+    pub lowland: f32,
+    pub blend: f32,
+    pub exaggeration: f32,
+    pub tree_line: f32,
+    pub snow_line: f32,
+    pub summit: f32,
+    pub rim: f32,
+    pub deepest: f32,
+    pub drainage_low: f32,
+    pub drainage_high: f32,
+    pub ramp_low: f32,
+    pub ramp_high: f32,
+    pub sun_elevation: f32,
+}
+
+/// As `View` in `shaders/land.wgsl`, which says what the fields mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the shader's own struct says it")]
+pub struct View {
+    pub view_proj: [[f32; 4]; 4],
+    pub eye: [f32; 4],
+    pub right: [f32; 4],
+    pub up: [f32; 4],
+    pub forward: [f32; 4],
+    pub extent: [f32; 2],
+    pub mesh: [f32; 2],
+    pub plan: [f32; 4],
+    pub tilt: f32,
+    pub exaggeration: f32,
+    pub lowland: f32,
+    pub summit: f32,
+    pub haze: f32,
+    pub lamp: f32,
+    pub encoded: f32,
+    pub distance: f32,
+}
+
+/// As `Air` in `shaders/land.wgsl`: colours in linear light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the shader's own struct says it")]
+pub struct Air {
+    pub valley: [f32; 4],
+    pub distance: [f32; 4],
+    pub glow: [f32; 4],
+    pub horizon: [f32; 4],
+    pub zenith: [f32; 4],
+    pub table: [f32; 4],
+}
+
+/// As `Reach` in `shaders/rivers.wgsl`: a straight piece of a river.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the shader's own struct says it")]
+pub struct Reach {
+    pub from_to: [f32; 4],
+    pub half_widths: [f32; 2],
+    pub large: [f32; 2],
+}
+
+impl Reach {
+    /// The vertex attributes, in the order of the shader's locations.
+    pub(super) const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
+        wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Float32x2];
+}
+
+/// The shaders, by name, as they are written; [`source`] makes modules of them.
+pub const SHADERS: [(&str, &str); 7] = [
+    ("grow", include_str!("../../shaders/grow.wgsl")),
+    ("relief", include_str!("../../shaders/relief.wgsl")),
+    ("noise", include_str!("../../shaders/noise.wgsl")),
+    ("rivers", include_str!("../../shaders/rivers.wgsl")),
+    ("sheet", include_str!("../../shaders/sheet.wgsl")),
+    ("land", include_str!("../../shaders/land.wgsl")),
+    ("shrink", include_str!("../../shaders/shrink.wgsl")),
+];
+
+/// What several shaders share.
+const GROUND: &str = include_str!("../../shaders/ground.wgsl");
+
+/// Looks in each direction when light is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightQuality {
+    /// Steps towards the sun.
+    pub sun_steps: u32,
+    /// Directions in which the sky is looked at.
+    pub sky_directions: u32,
+    /// Steps in each.
+    pub sky_steps: u32,
+}
+
+/// Cells of the height grid along one texel of the big forms.
+pub(super) const FORM_CELLS: u32 = 8;
+/// Cells along one texel of the light.
+pub(super) const LIGHT_CELLS: u32 = 2;
+/// Generations of gullies below the mesh.
+const GULLIES: u32 = 3;
+/// Radius over which big forms are taken, metres.
+const FORM_REACH: f32 = 4000.0;
+/// Width of the meadows beside a large river, metres.
+const MEADOW: f32 = 1400.0;
+/// Farthest that shadows and skies look, cells of the grid.
+const FARTHEST_LOOK: f64 = 110.0;
+
+/// Rows of the ramp texture.
+pub(super) const RAMP_ROWS: [&str; 9] = [
+    "OPEN", "WOOD", "ROCK", "SCREE", "SNOW", "WATER_MEADOW", "SHALLOW", "DEEP", "SHORE",
+];
+
+/// Factor from one step to the next, so that `steps` steps from `first` cells reach [`FARTHEST_LOOK`].
+fn stride(steps: u32, first: f64) -> f64 {
+    (FARTHEST_LOOK / first).powf(1.0 / f64::from(steps.max(2) - 1))
+}
+
+/// The whole text of a shader: the constants that Rust and shaders share, what shaders share, and its own.
+pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
+    let mut text = String::new();
+    let mut constant = |name: &str, value: &dyn std::fmt::Display| {
+        // Writing into a string cannot fail.
+        let _ = writeln!(text, "const {name} = {value};");
+    };
+    let float = |value: f64| format!("{value:?}");
+    constant("FORM_CELLS", &float(f64::from(FORM_CELLS)));
+    constant("LIGHT_CELLS", &float(f64::from(LIGHT_CELLS)));
+    constant("FORM_REACH", &float(f64::from(FORM_REACH)));
+    constant("MEADOW", &float(f64::from(MEADOW)));
+    constant("GULLIES", &GULLIES);
+    constant("SUN_STEPS", &light.sun_steps);
+    constant("SUN_STRIDE", &float(stride(light.sun_steps, 0.9 * f64::from(LIGHT_CELLS))));
+    constant("SKY_DIRECTIONS", &light.sky_directions);
+    constant("SKY_STEPS", &light.sky_steps);
+    constant("SKY_STRIDE", &float(stride(light.sky_steps, 1.2 * f64::from(LIGHT_CELLS))));
+    constant("PENUMBRA_LOW", &float(f64::from(penumbra.0)));
+    constant("PENUMBRA_HIGH", &float(f64::from(penumbra.1)));
+    constant("RAMPS", &float(RAMP_ROWS.len() as f64));
+    for (row, name) in RAMP_ROWS.iter().enumerate() {
+        constant(name, &float(row as f64));
+    }
+    let own = SHADERS.iter().find(|(other, _)| *other == name).map_or("", |(_, own)| own);
+    let shared = if matches!(name, "land" | "shrink") { "" } else { GROUND };
+    let noise = if name == "sheet" { SHADERS[2].1 } else { "" };
+    format!("{text}{shared}{noise}{own}")
+}
