@@ -133,7 +133,7 @@ fn scale_bar(sheet: &mut Pixmap, font: &FontRef<'_>, frame: MapFrame, right: f32
 }
 
 /// The largest 1, 2 or 5 times a power of ten that is not above `value`.
-fn round_below(value: f64) -> f64 {
+pub(crate) fn round_below(value: f64) -> f64 {
     let power = 10.0_f64.powi(value.log10().floor() as i32);
     let digit = value / power;
     power

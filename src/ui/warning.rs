@@ -1,0 +1,68 @@
+//! The warning before a reset: the land dims, and a ring runs out. Any touch ends it.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use egui::emath::Rot2;
+use egui::{Align2, Painter, Rect, vec2};
+
+use super::ease;
+use super::ghost;
+use super::lettering::{self, turn};
+use super::palette::{AMBER, LAMP, ROOM, between, faded};
+use super::pen::{Line, Pen};
+use super::sight::Sight;
+use super::words;
+use crate::gesture::contact::Side;
+
+/// Time in which the land dims, ms.
+const DIMS: f64 = 1500.0;
+
+/// Radius of the ring, mm.
+const RADIUS: f32 = 74.0;
+
+/// Draws the warning over all of `screen` (points): `left_ms` of `whole_ms` until the reset.
+pub fn draw(painter: &Painter, sight: &Sight<'_>, screen: Rect, left_ms: u64, whole_ms: u64) {
+    let pen = Pen { painter, sight };
+    let gone_ms = whole_ms.saturating_sub(left_ms) as f64;
+    let shown = ease::smooth(gone_ms / DIMS);
+    painter.rect_filled(screen, 0.0, faded(ROOM, 0.66 * shown));
+
+    let Some(centre) = sight.of_table(sight.map().size_mm() / 2.0) else {
+        return;
+    };
+    pen.spot(centre, 2.4 * RADIUS, faded(ROOM, 0.55 * shown));
+    let left = left_ms.min(whole_ms) as f32 / whole_ms.max(1) as f32;
+    // The last seconds are warmer.
+    let colour = between(AMBER, LAMP, left * 1.4);
+    pen.ring(centre, RADIUS, Line::solid(LAMP, 0.22 * shown, 0.8));
+    pen.glow(centre, RADIUS, 5.0, 9.0, faded(colour, 0.16 * shown));
+    // What is left runs out clockwise from the top.
+    let start = -FRAC_PI_2 + TAU * (1.0 - left);
+    pen.arc(centre, RADIUS, start, TAU * left, Line::solid(colour, shown, 2.4));
+    let across = vec2(pen.mm(26.0), 0.0);
+    pen.line(
+        &[centre - across, centre + across],
+        false,
+        Line::solid(LAMP, 0.25 * shown, 0.6),
+    );
+
+    let seconds = left_ms.div_ceil(1000).to_string();
+    for side in [Side::South, Side::North] {
+        let turn = turn(side);
+        let place = |y: f32| centre + Rot2::from_angle(turn) * vec2(0.0, pen.mm(y));
+        let write = |y: f32, text: &str, size: f32, strength: f32| {
+            lettering::write(
+                painter,
+                place(y),
+                Align2::CENTER_CENTER,
+                text,
+                pen.mm(size),
+                faded(LAMP, strength * shown),
+                turn,
+            );
+        };
+        write(31.0, &seconds, 44.0, 1.0);
+        ghost::icon(pen, place(RADIUS + 34.0), 40.0, turn, LAMP, 0.9 * shown);
+        write(RADIUS + 66.0, words::TOUCH_TO_STAY, 13.0, 0.9);
+    }
+}

@@ -1,0 +1,30 @@
+//! All words that a visitor may read: few, and in one place.
+
+use crate::instrument::ControlKind;
+
+/// Beside the hand that stays the count-down.
+pub(super) const TOUCH_TO_STAY: &str = "Touch to stay";
+
+/// The clock has been stopped.
+pub(super) const PAUSED: &str = "paused";
+
+/// The world has run on for as long as it may.
+pub(super) const AT_REST: &str = "at rest";
+
+/// Millions of years.
+pub(super) const MY: &str = "My";
+
+/// The word beside a control.
+pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
+    match (kind, on) {
+        (ControlKind::Tool, _) => "edit",
+        (ControlKind::Undo, _) => "undo",
+        (ControlKind::PlayPause, true) => "pause",
+        (ControlKind::PlayPause, false) => "play",
+        (ControlKind::Speed, _) => "speed",
+        (ControlKind::Scrub, _) => "time",
+        (ControlKind::StartOver, _) => "start over",
+        (ControlKind::Readouts, _) => "figures",
+        (ControlKind::Save, _) => "save",
+    }
+}
