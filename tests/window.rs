@@ -5,10 +5,12 @@
 
 mod window_support;
 
-use std::process::Command;
-use std::{env, fs};
+use std::fs;
 
-use window_support::{Key, Metrics, Picture, Script, Second, Setup, Table, WHOLE_SECOND, gesture, missing};
+use window_support::fingers::{Script, gesture};
+use window_support::metrics::{Metrics, Second, WHOLE_SECOND};
+use window_support::picture::Picture;
+use window_support::{Key, Setup, Table};
 
 /// Mean difference of pixels that a visitor sees without looking for it, 0–255.
 const SEEN: f64 = 6.0;
@@ -16,32 +18,9 @@ const SEEN: f64 = 6.0;
 /// Mean difference of pixels that nobody sees.
 const UNSEEN: f64 = 2.0;
 
-/// The table, or nothing where this machine cannot show one.
-#[allow(clippy::print_stdout, reason = "a skipped test says why")]
-fn table(test: &str, setup: &Setup<'_>) -> Option<Table> {
-    let missing = missing();
-    if missing.is_empty() {
-        return Some(Table::start(test, setup));
-    }
-    let missing = missing.join(", ");
-    assert!(
-        env::var_os("OROGEN_REQUIRE_WINDOW").is_none(),
-        "missing: {missing}"
-    );
-    println!("skipped {test}; missing: {missing}");
-    None
-}
-
-/// The table after the first touch.
-fn table_in_play(test: &str, setup: &Setup<'_>) -> Option<Table> {
-    let mut table = table(test, setup)?;
-    table.wake();
-    Some(table)
-}
-
 #[test]
 fn two_hands_raise_a_range() {
-    let Some(mut table) = table_in_play("two_hands_raise_a_range", &Setup::default()) else {
+    let Some(mut table) = Table::in_play("two_hands_raise_a_range", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -94,7 +73,7 @@ fn two_hands_raise_a_range() {
 
 #[test]
 fn four_visitors_sculpt_at_once() {
-    let Some(mut table) = table_in_play("four_visitors_sculpt_at_once", &Setup::default()) else {
+    let Some(mut table) = Table::in_play("four_visitors_sculpt_at_once", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -130,7 +109,7 @@ fn four_visitors_sculpt_at_once() {
 
 #[test]
 fn taps_between_two_frames_are_kept() {
-    let Some(mut table) = table_in_play("taps_between_two_frames_are_kept", &Setup::default()) else {
+    let Some(mut table) = Table::in_play("taps_between_two_frames_are_kept", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -152,7 +131,7 @@ fn taps_between_two_frames_are_kept() {
 
 #[test]
 fn a_finger_on_a_control_does_not_sculpt() {
-    let Some(mut table) = table_in_play("a_finger_on_a_control_does_not_sculpt", &Setup::default()) else {
+    let Some(mut table) = Table::in_play("a_finger_on_a_control_does_not_sculpt", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -187,7 +166,7 @@ fn a_finger_on_a_control_does_not_sculpt() {
 
 #[test]
 fn an_unplugged_touchscreen_leaves_no_finger_behind() {
-    let Some(mut table) = table_in_play(
+    let Some(mut table) = Table::in_play(
         "an_unplugged_touchscreen_leaves_no_finger_behind",
         &Setup::default(),
     ) else {
@@ -219,7 +198,7 @@ fn an_unplugged_touchscreen_leaves_no_finger_behind() {
 /// Plays gesture files one after the other. Each has to be seen where its file says that the land changes, and the
 /// land has to be another there.
 fn answers(test: &str, names: &[&str]) {
-    let Some(mut table) = table_in_play(test, &Setup::default()) else {
+    let Some(mut table) = Table::in_play(test, &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -284,107 +263,6 @@ fn pulling_equal_pushes_and_a_neighbour_are_answered() {
     );
 }
 
-/// A table that nobody uses for twenty seconds begins to count down from twenty.
-fn soon_idle() -> Setup<'static> {
-    Setup {
-        settings: "[table]\nwidth_mm = 1209.6\n[kiosk]\nidle_s = 20\ncountdown_s = 20\n",
-        ..Setup::default()
-    }
-}
-
-#[test]
-fn an_idle_table_starts_over() {
-    let Some(mut table) = table_in_play("an_idle_table_starts_over", &soon_idle()) else {
-        return;
-    };
-    let (from, to) = (table.at(0.4, 0.5), table.at(0.55, 0.5));
-    let mut finger = Script::default();
-    finger.stroke(0.0, 1.0, from, to);
-    table.play(&finger);
-    let start = table.settled();
-    let warned = table.wait("the warning", 30.0, |now| now.phase == "idle_warning");
-    let idle = warned.t_s - start.t_s;
-    assert!((15.0..25.0).contains(&idle), "warned {idle:.1} s after the touch");
-    assert!(
-        warned.max_m > start.max_m + 500.0,
-        "the land goes on while nobody touches it"
-    );
-    let over = table.wait("the reset", 30.0, |now| now.resets > start.resets);
-    let counted = over.t_s - warned.t_s;
-    assert!(
-        (17.0..24.0).contains(&counted),
-        "the countdown took {counted:.1} s"
-    );
-    let rest = table.wait("the show", 10.0, |now| now.phase == "attract");
-    assert!(rest.max_m < start.max_m.max(500.0), "the range is gone: {rest:?}");
-    assert_eq!(rest.resets, start.resets + 1);
-}
-
-#[test]
-fn a_touch_cancels_the_countdown() {
-    let Some(mut table) = table_in_play("a_touch_cancels_the_countdown", &soon_idle()) else {
-        return;
-    };
-    let start = table.settled();
-    let warned = table.wait("the warning", 30.0, |now| now.phase == "idle_warning");
-    let picture = table.look("warned");
-    let mut touch = Script::default();
-    touch.tap(0.0, 0.2, table.at(0.3, 0.4));
-    table.play(&touch);
-    table.wait("play", 3.0, |now| now.phase == "play");
-    assert!(
-        table
-            .look("cancelled")
-            .difference(&picture, table.at(0.5, 0.5), 360)
-            > 0.5,
-        "the warning is not seen"
-    );
-    // Had the countdown gone on, it would have ended by now.
-    let later = table.wait("twenty-two seconds", 30.0, |now| now.t_s > warned.t_s + 22.0);
-    assert_eq!(later.resets, start.resets);
-}
-
-#[test]
-fn visitors_cannot_leave_the_kiosk_and_staff_can() {
-    let setup = Setup {
-        arguments: &["kiosk"],
-        settings: "[table]\nwidth_mm = 1209.6\n[staff]\npin = \"2468\"\ncorner = \"north-west\"\n",
-        ..Setup::default()
-    };
-    let Some(mut table) = table_in_play("visitors_cannot_leave_the_kiosk_and_staff_can", &setup) else {
-        return;
-    };
-    for keys in [&[Key::Escape][..], &[Key::Alt, Key::F4]] {
-        table.press(keys, 0.1);
-        assert!(table.survives(2.0), "{keys:?} closed the kiosk");
-    }
-    let corner = table.metrics.staff_corner();
-    let mut touch = Script::default();
-    touch.tap(0.0, 1.0, corner);
-    table.play(&touch);
-    table.settled();
-    assert!(!table.metrics.keypad_shown(), "a short touch opened the keypad");
-    let mut touch = Script::default();
-    touch.tap(0.0, 3.5, corner);
-    table.play(&touch);
-    for wrong_then_right in ["1357", "2468"] {
-        for digit in wrong_then_right.chars() {
-            tap(&mut table, &digit.to_string());
-        }
-    }
-    tap(&mut table, "Leave");
-    assert_eq!(table.ended(15.0).code(), Some(0));
-}
-
-/// Taps a key of the keypad or a button of the menu.
-fn tap(table: &mut Table, label: &str) {
-    let at = table.metrics.place(label, 5.0);
-    let mut touch = Script::default();
-    touch.tap(0.0, 0.15, at);
-    table.play(&touch);
-    std::thread::sleep(std::time::Duration::from_millis(300));
-}
-
 #[test]
 fn the_mouse_is_a_finger_and_alt_f4_closes_a_window() {
     let setup = Setup {
@@ -392,7 +270,7 @@ fn the_mouse_is_a_finger_and_alt_f4_closes_a_window() {
         arguments: &["--windowed", "--size", "960x540"],
         ..Setup::default()
     };
-    let Some(mut table) = table_in_play("the_mouse_is_a_finger_and_alt_f4_closes_a_window", &setup) else {
+    let Some(mut table) = Table::in_play("the_mouse_is_a_finger_and_alt_f4_closes_a_window", &setup) else {
         return;
     };
     let start = table.settled();
@@ -407,6 +285,14 @@ fn the_mouse_is_a_finger_and_alt_f4_closes_a_window() {
     );
     let risen = table.save().risen(&land, (to.0 + 15.0, to.1), 40.0);
     assert!(risen > 100.0, "before the mouse the land rose by {risen:.0} m");
+    table.press(&[Key::R], 0.3);
+    let kept = table.settled();
+    assert!(
+        kept.max_m >= end.max_m,
+        "R was not held, yet the land is another: {kept:?}"
+    );
+    table.press(&[Key::R], 2.0);
+    table.wait("fresh land", 5.0, |now| now.max_m < start.max_m + 100.0);
     table.press(&[Key::Alt, Key::F4], 0.1);
     assert_eq!(table.ended(10.0).code(), Some(0));
 }
@@ -418,7 +304,7 @@ fn a_window_changes_its_size_and_escape_closes_it() {
         arguments: &["--windowed", "--size", "960x540"],
         ..Setup::default()
     };
-    let Some(mut table) = table_in_play("a_window_changes_its_size_and_escape_closes_it", &setup) else {
+    let Some(mut table) = Table::in_play("a_window_changes_its_size_and_escape_closes_it", &setup) else {
         return;
     };
     let whole: serde_json::Value = serde_json::from_str(&table.metrics.last_line()).unwrap();
@@ -451,26 +337,6 @@ fn a_window_changes_its_size_and_escape_closes_it() {
 }
 
 #[test]
-fn without_a_display_the_kiosk_says_so_in_a_line() {
-    let output = Command::new(env!("CARGO_BIN_EXE_orogen"))
-        .arg("kiosk")
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{error}");
-    assert_eq!(
-        error.trim_end().lines().count(),
-        1,
-        "one line expected, got:\n{error}"
-    );
-    assert!(error.contains("display"), "{error}");
-    assert!(output.stdout.is_empty());
-}
-
-#[test]
 fn the_checks_can_fail() {
     let dark = Picture(image::RgbImage::from_pixel(64, 64, image::Rgb([10, 20, 30])));
     let mut lit = dark.0.clone();
@@ -484,8 +350,16 @@ fn the_checks_can_fail() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("metrics.jsonl");
     let mut metrics = Metrics::new(file.clone());
-    let line =
-        |t: u32, phase: &str| format!("{{\"t_s\":{t},\"phase\":\"{phase}\",\"frames\":60}}\n{{\"t_s\":");
+    let line = |t_s: u32, phase: &str| {
+        let mut second: serde_json::Map<_, _> = WHOLE_SECOND
+            .split_whitespace()
+            .map(|field| (field.to_owned(), 0.into()))
+            .collect();
+        second.insert("t_s".to_owned(), t_s.into());
+        second.insert("phase".to_owned(), phase.into());
+        // The next line is being written.
+        format!("{}\n{{\"t_s\":", serde_json::Value::from(second))
+    };
     fs::write(&file, line(1, "attract")).unwrap();
     assert_eq!(
         (metrics.newest().t_s, metrics.newest().phase.as_str()),

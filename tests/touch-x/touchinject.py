@@ -38,6 +38,7 @@ class Device:
     name = None  # X input device name in xorg-touch.conf.in
 
     def __init__(self, path):
+        self.unsynced = False  # events were sent since the last sync
         self.s = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.s.connect(path)
         self._send(CLIENT_VERSION, struct.pack("=HH", *VERSION))
@@ -62,6 +63,10 @@ class Device:
     def _send(self, typ, body=b""):
         self.s.sendall(struct.pack("=II", 8 + len(body), typ) + body)
 
+    def _event(self, typ, body):
+        self._send(typ, body)
+        self.unsynced = True
+
     def _recv(self):
         def exactly(n):
             b = b""
@@ -75,10 +80,13 @@ class Device:
         return typ, exactly(n - 8)
 
     def sync(self):
-        """Returns when the X server has processed everything sent before."""
-        self._send(WAIT_FOR_SYNC)
-        typ, _ = self._recv()
-        assert typ == 1, "no sync response"
+        """Returns when the X server has processed everything sent before. The driver answers only
+        where there was something to process."""
+        if self.unsynced:
+            self._send(WAIT_FOR_SYNC)
+            typ, _ = self._recv()
+            assert typ == 1, "no sync response"
+            self.unsynced = False
 
     def close(self):
         """Leave tidily. The driver does not notice a plain hang-up: it would spin at 100 % CPU
@@ -122,7 +130,7 @@ class Touch(Device):
         axes = {0: x * (AXIS_MAX + 1) / self.w, 1: y * (AXIS_MAX + 1) / self.h}
         if pressure is not None:
             axes[4] = pressure * PRESSURE_MAX
-        self._send(TOUCH, struct.pack("=II", ident, kind) + valuators(axes))
+        self._event(TOUCH, struct.pack("=II", ident, kind) + valuators(axes))
 
     def down(self, ident, x, y, pressure=None):
         self._touch(ident, XI_TouchBegin, x, y, pressure)
@@ -138,7 +146,7 @@ class Keyboard(Device):
     name = "kbd0"
 
     def key(self, keycode, press):
-        self._send(KEY, struct.pack("=iI", keycode, 1 if press else 0))
+        self._event(KEY, struct.pack("=iI", keycode, 1 if press else 0))
 
     def tap(self, keycode):
         self.key(keycode, True)
@@ -157,11 +165,11 @@ class Pointer(Device):
 
     def move(self, x, y):
         # 8-byte header + u32 is_absolute, then 4 bytes of padding before the 8-aligned valuators.
-        self._send(MOTION, struct.pack("=I4x", 1) + self._axes(x, y))
+        self._event(MOTION, struct.pack("=I4x", 1) + self._axes(x, y))
 
     def button(self, n, press):
         # i32 is_absolute, i32 button, u32 is_press, 4 pad, valuators (empty mask).
-        self._send(BUTTON, struct.pack("=iiI4x", 1, n, 1 if press else 0) + valuators({}))
+        self._event(BUTTON, struct.pack("=iiI4x", 1, n, 1 if press else 0) + valuators({}))
 
 
 def ten_fingers(t, w, h):

@@ -8,7 +8,8 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{At, Picture};
+use super::At;
+use super::picture::Picture;
 
 /// The software Vulkan driver. The dummy display has no card; a real one could not show its pictures there.
 const LAVAPIPE: &str = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json";
@@ -17,7 +18,7 @@ const LAVAPIPE: &str = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json";
 const INPUTTEST: &str = "/usr/lib/xorg/modules/input/inputtest_drv.so";
 
 /// What of the equipment is not on this machine.
-pub fn missing() -> Vec<String> {
+pub(super) fn missing() -> Vec<String> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let tools = [
         "Xorg", "openbox", "xinput", "xwininfo", "xprop", "import", "python3",
@@ -71,6 +72,7 @@ impl Display {
         display.window_manager = display
             .command("openbox")
             .args(["--config-file", "/etc/xdg/openbox/rc.xml"])
+            .stdout(Stdio::null())
             .stderr(File::create(folder.join("openbox.err")).unwrap())
             .spawn()
             .unwrap();

@@ -154,6 +154,7 @@ impl Fingers {
             answers: BufReader::new(injector.stdout.take().unwrap()),
             injector,
         };
+        // Its answer says that it is connected.
         fingers.send(&[]);
         fingers
     }
@@ -188,8 +189,9 @@ impl Fingers {
         let start = json!({"op": "start"});
         let sync = json!({"op": "sync"});
         let all = std::iter::once(&start).chain(lines).chain(std::iter::once(&sync));
-        let text: String = all.map(|line| format!("{line}\n")).collect();
-        self.lines.as_mut().unwrap().write_all(text.as_bytes()).unwrap();
+        let mut text = Vec::new();
+        all.for_each(|line| writeln!(text, "{line}").unwrap());
+        self.lines.as_mut().unwrap().write_all(&text).unwrap();
         let mut answer = String::new();
         self.answers.read_line(&mut answer).unwrap();
         assert_eq!(answer.trim(), "synced", "the injector ended; see injector.err");

@@ -1,17 +1,22 @@
-//! The real program in a real window under real touch: what the tests of `window.rs` stand on.
+//! The real program in a real window under real touch: what the tests of `window.rs` and `window_kiosk.rs` stand on.
 //!
 //! Each test has an X server of its own (`touch-x/`), a window manager, the program on software Vulkan, and fingers
 //! that come in as device events. Tests run one at a time, because each wants the whole machine. What a test saw
 //! lies in `target/window-failures/<test>/` while it runs, and stays there if it fails.
-#![allow(unreachable_pub, reason = "one test file uses this module")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "each test file uses its part of this module"
+)]
 #![allow(clippy::unwrap_used, reason = "the equipment fails tests by panicking")]
 
 mod display;
-mod fingers;
+pub mod fingers;
 mod land;
-mod metrics;
-mod picture;
+pub mod metrics;
+pub mod picture;
 
+use std::env;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus, Stdio};
@@ -20,13 +25,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use display::Display;
-use fingers::Fingers;
-
-pub use display::missing;
-pub use fingers::{Script, gesture};
+use fingers::{Fingers, Script};
 use land::Land;
-pub use metrics::{Metrics, Second, WHOLE_SECOND};
-pub use picture::Picture;
+use metrics::{Metrics, Second};
+use picture::Picture;
 
 /// Pixels, from the window's top-left corner.
 pub type At = (f64, f64);
@@ -84,8 +86,31 @@ pub struct Table {
 }
 
 impl Table {
-    /// Starts server, window manager and program, and waits for the program's first line.
-    pub fn start(test: &str, setup: &Setup<'_>) -> Self {
+    /// Starts server, window manager and program, and waits for the program's first line. Nothing where this machine
+    /// lacks the equipment, unless it is required to have it.
+    #[allow(clippy::print_stdout, reason = "a skipped test says why")]
+    pub fn start(test: &str, setup: &Setup<'_>) -> Option<Self> {
+        let missing = display::missing();
+        if missing.is_empty() {
+            return Some(Self::open(test, setup));
+        }
+        let missing = missing.join(", ");
+        assert!(
+            env::var_os("OROGEN_REQUIRE_WINDOW").is_none(),
+            "missing: {missing}"
+        );
+        println!("skipped {test}; missing: {missing}");
+        None
+    }
+
+    /// The table after the first touch.
+    pub fn in_play(test: &str, setup: &Setup<'_>) -> Option<Self> {
+        let mut table = Self::start(test, setup)?;
+        table.wake();
+        Some(table)
+    }
+
+    fn open(test: &str, setup: &Setup<'_>) -> Self {
         static ALONE: Mutex<()> = Mutex::new(());
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = evidence(test);
@@ -95,7 +120,10 @@ impl Table {
         fs::write(&settings, setup.settings).unwrap();
         let metrics = folder.join("metrics.jsonl");
         let program = display
-            .command(env!("CARGO_BIN_EXE_orogen"))
+            .command(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/target/debug/examples/fake_table"
+            ))
             .args(setup.arguments)
             .arg("--settings")
             .arg(&settings)
