@@ -70,6 +70,39 @@ fn a_touch_cancels_the_countdown() {
 }
 
 #[test]
+fn a_touch_during_the_flight_only_wakes_the_plan() {
+    let setup = Setup {
+        settings: "[table]\nwidth_mm = 1209.6\n[kiosk]\nidle_s = 600\nflight_after_s = 5\n",
+        ..Setup::default()
+    };
+    let Some(mut table) = Table::in_play("a_touch_during_the_flight_only_wakes_the_plan", &setup) else {
+        return;
+    };
+    let start = table.settled();
+    let (plan, middle) = (table.look("plan"), table.at(0.5, 0.5));
+    table.wait("the flight", 20.0, |now| now.t_s > start.t_s + 12.0);
+    let flight = table.look("flight").difference(&plan, middle, 360);
+    assert!(
+        flight > 10.0,
+        "in flight the picture is the plan but for {flight:.1}"
+    );
+    let mut touch = Script::default();
+    touch.tap(0.0, 0.2, middle);
+    table.play(&touch);
+    let end = table.wait("the plan", 10.0, |now| now.t_s > start.t_s + 16.0);
+    assert_eq!(
+        (end.taps, end.pushes),
+        (start.taps, start.pushes),
+        "the touch sculpted"
+    );
+    let back = table.look("back").difference(&plan, middle, 360);
+    assert!(
+        back < flight / 3.0,
+        "the plan differs by {back:.1} from what it was"
+    );
+}
+
+#[test]
 fn visitors_cannot_leave_the_kiosk_and_staff_can() {
     let setup = Setup {
         arguments: &["kiosk"],

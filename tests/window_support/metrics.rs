@@ -24,9 +24,10 @@ pub struct Second {
     pub frames: u64,
     /// Contacts that are down.
     pub contacts: u64,
-    /// Contacts so far; likewise the counts that follow.
-    pub contacts_total: u64,
+    /// Hands that are down.
     pub hands: u64,
+    /// Contacts that came to the land so far; likewise the counts that follow.
+    pub contacts_total: u64,
     pub pushes: u64,
     pub taps: u64,
     pub dead_touches: u64,

@@ -61,12 +61,12 @@ pub struct Setup<'a> {
 }
 
 impl Default for Setup<'_> {
-    /// A full-screen table of 1209.6 × 680.4 mm at 1280 × 720, on which nobody becomes idle.
+    /// A full-screen table of 1209.6 × 680.4 mm at 1280 × 720 that stays in plan view while nobody touches it.
     fn default() -> Self {
         Self {
             screen: (1280, 720),
             arguments: &[],
-            settings: "[table]\nwidth_mm = 1209.6\n[kiosk]\nidle_s = 600\n",
+            settings: "[table]\nwidth_mm = 1209.6\n[kiosk]\nidle_s = 600\nflight_after_s = 600\n",
         }
     }
 }
