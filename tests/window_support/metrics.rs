@@ -1,0 +1,201 @@
+//! What the program says of itself, second by second.
+
+use std::fs;
+use std::path::PathBuf;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::At;
+
+/// Every field of a second.
+pub const WHOLE_SECOND: &str = "t_s phase frames frame_ms_p50 frame_ms_p99 touch_ms_p50 touch_ms_p95 steps_per_s \
+    contacts contacts_total hands pushes taps ghosts_dropped dead_touches control_presses resets panics nodes scale \
+    elapsed_yr max_m min_m adapter backend width height";
+
+/// The fields of a second that tests ask for.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub struct Second {
+    pub t_s: f64,
+    pub phase: String,
+    /// Frames shown in this second.
+    pub frames: u64,
+    /// Contacts that are down.
+    pub contacts: u64,
+    /// Hands that are down.
+    pub hands: u64,
+    /// Contacts that came to the land so far; likewise the counts that follow.
+    pub contacts_total: u64,
+    pub pushes: u64,
+    pub taps: u64,
+    pub dead_touches: u64,
+    pub control_presses: u64,
+    pub resets: u64,
+    pub panics: u64,
+    /// Highest point, metres.
+    pub max_m: f64,
+    /// The window's inside, pixels.
+    pub width: u32,
+    pub height: u32,
+}
+
+/// A key or button.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Place {
+    #[serde(default)]
+    pub label: String,
+    pub x_px: f64,
+    pub y_px: f64,
+}
+
+impl Place {
+    fn at(&self) -> At {
+        (self.x_px, self.y_px)
+    }
+}
+
+/// A control of a side.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Control {
+    pub kind: String,
+    pub x_px: f64,
+    pub y_px: f64,
+}
+
+/// Lines that come when something is laid out.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+struct Layout {
+    controls: Option<Vec<Control>>,
+    staff_corner: Option<Place>,
+    keypad: Option<Vec<Place>>,
+    menu: Option<Vec<Place>>,
+}
+
+/// The metrics file, read as it grows.
+pub struct Metrics {
+    file: PathBuf,
+    read: usize,
+    seconds: Vec<Second>,
+    layout: Layout,
+}
+
+impl Metrics {
+    pub fn new(file: PathBuf) -> Self {
+        Self {
+            file,
+            read: 0,
+            seconds: Vec::new(),
+            layout: Layout::default(),
+        }
+    }
+
+    /// The newest second.
+    pub fn newest(&mut self) -> Second {
+        self.poll();
+        self.seconds.last().cloned().unwrap_or_default()
+    }
+
+    /// The newest second's line.
+    pub fn last_line(&self) -> String {
+        let text = fs::read_to_string(&self.file).unwrap();
+        let mut seconds = text
+            .lines()
+            .filter(|line| line.contains("\"phase\"") && line.ends_with('}'));
+        seconds.next_back().unwrap().to_owned()
+    }
+
+    /// The first second from now on for which `holds`; fails where `alive` does, or time runs out.
+    pub fn wait(
+        &mut self,
+        what: &str,
+        seconds: f64,
+        mut alive: impl FnMut() -> Result<(), String>,
+        holds: impl Fn(&Second) -> bool,
+    ) -> Second {
+        self.poll();
+        let mut seen = self.seconds.len();
+        let until = Instant::now() + Duration::from_secs_f64(seconds);
+        loop {
+            if let Some(found) = self.seconds[seen..].iter().find(|second| holds(second)) {
+                return found.clone();
+            }
+            seen = self.seconds.len();
+            if let Err(reason) = alive() {
+                panic!("waited for {what}: {reason}");
+            }
+            let newest = self.seconds.last();
+            assert!(
+                Instant::now() < until,
+                "waited {seconds} s for {what}; newest: {newest:?}"
+            );
+            thread::sleep(Duration::from_millis(50));
+            self.poll();
+        }
+    }
+
+    /// The corner that lets staff in.
+    pub fn staff_corner(&mut self) -> At {
+        self.poll();
+        let corner = self.layout.staff_corner.as_ref();
+        corner.map(Place::at).expect("the staff corner's place")
+    }
+
+    /// Whether a keypad has been shown so far.
+    pub fn keypad_shown(&mut self) -> bool {
+        self.poll();
+        self.layout.keypad.is_some()
+    }
+
+    /// A control that does `kind`.
+    pub fn control(&mut self, kind: &str) -> Control {
+        self.poll();
+        let controls = self.layout.controls.iter().flatten();
+        let found = controls.clone().find(|control| control.kind == kind);
+        found
+            .cloned()
+            .unwrap_or_else(|| panic!("no {kind} among {:?}", controls.collect::<Vec<_>>()))
+    }
+
+    /// A key of the keypad, or a button of the staff menu, as soon as it is shown.
+    pub fn place(&mut self, label: &str, seconds: f64) -> At {
+        let until = Instant::now() + Duration::from_secs_f64(seconds);
+        loop {
+            self.poll();
+            let places = self.layout.menu.iter().chain(&self.layout.keypad).flatten();
+            if let Some(found) = places.clone().find(|place| place.label == label) {
+                return found.at();
+            }
+            let labels: Vec<_> = places.map(|place| &place.label).collect();
+            assert!(
+                Instant::now() < until,
+                "no `{label}` after {seconds} s; there are {labels:?}"
+            );
+            thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Reads the lines that were completed since the last time.
+    fn poll(&mut self) {
+        let text = fs::read_to_string(&self.file).unwrap_or_default();
+        let whole = text.rfind('\n').map_or(0, |end| end + 1);
+        for line in text.get(self.read..whole).unwrap_or_default().lines() {
+            let value: Value = serde_json::from_str(line).unwrap_or_else(|e| panic!("{e} in: {line}"));
+            if value.get("phase").is_some() {
+                let second = serde_json::from_value(value).unwrap_or_else(|e| panic!("{e} in: {line}"));
+                self.seconds.push(second);
+            } else {
+                let new: Layout = serde_json::from_value(value).unwrap_or_else(|e| panic!("{e} in: {line}"));
+                self.layout = Layout {
+                    controls: new.controls.or(self.layout.controls.take()),
+                    staff_corner: new.staff_corner.or(self.layout.staff_corner.take()),
+                    keypad: new.keypad.or(self.layout.keypad.take()),
+                    menu: new.menu.or(self.layout.menu.take()),
+                };
+            }
+        }
+        self.read = self.read.max(whole);
+    }
+}
