@@ -1,7 +1,19 @@
 //! Thresholds of the gesture grammar.
 
+use glam::DVec2;
+
 /// Most fingers of a hand.
 pub const MAX_FINGERS: usize = 5;
+
+/// Fingertips of a relaxed right hand around its middle, seen from the south, thumb to little finger, mm. Neighbours
+/// are 34 to 51 mm apart, as in recorded hands.
+pub const RELAXED_HAND_MM: [DVec2; MAX_FINGERS] = [
+    DVec2::new(-52.0, 34.0),
+    DVec2::new(-32.0, -12.0),
+    DVec2::new(3.0, -26.0),
+    DVec2::new(36.0, -16.0),
+    DVec2::new(58.0, 14.0),
+];
 
 /// The thresholds that tell fingers from palms and hands from each other. [`GestureParams::BOUNDS`] lists unit and
 /// range of each.

@@ -17,20 +17,11 @@ use glam::{DAffine2, DMat2, DVec2};
 use crate::gesture::contact::{
     Contact, ContactEvent, ContactKey, MAX_CONTACTS, MAX_COORDINATE_MM, Phase, Source, quantise_mm,
 };
+use crate::gesture::params::RELAXED_HAND_MM;
 use crate::settings::Orientation;
 
 /// How long after the last touch the mouse is still taken for its shadow, µs.
 const SHADOW_US: u64 = 500_000;
-
-/// Fingers of a planted hand around the pointer, mm: thumb to little finger of a relaxed right hand seen from the
-/// south. Neighbours are 34 to 50 mm apart, as in recorded hands.
-const PLANTED_MM: [DVec2; 5] = [
-    DVec2::new(-52.0, 34.0),
-    DVec2::new(-32.0, -12.0),
-    DVec2::new(3.0, -26.0),
-    DVec2::new(36.0, -16.0),
-    DVec2::new(58.0, 14.0),
-];
 
 /// A click this near to the middle of a planted hand lifts it, mm.
 const PLANTED_REACH_MM: f64 = 75.0;
@@ -277,20 +268,20 @@ impl WindowInput {
             self.lift_planted(first, out);
             return;
         }
-        if self.down.len() + PLANTED_MM.len() > MAX_CONTACTS {
+        if self.down.len() + RELAXED_HAND_MM.len() > MAX_CONTACTS {
             self.counts.over_cap += 1;
             return;
         }
         let first = self.next_planted;
-        self.next_planted += PLANTED_MM.len() as u64;
+        self.next_planted += RELAXED_HAND_MM.len() as u64;
         self.planted.insert(first, at);
-        for (id, offset) in (first..).zip(PLANTED_MM) {
+        for (id, offset) in (first..).zip(RELAXED_HAND_MM) {
             self.land((Source::Mouse, PLANTED_DEVICE, id), on_raster(at + offset), out);
         }
     }
 
     fn lift_planted(&mut self, first: u64, out: &mut Vec<ContactEvent>) {
-        for id in first..first + PLANTED_MM.len() as u64 {
+        for id in first..first + RELAXED_HAND_MM.len() as u64 {
             self.end((Source::Mouse, PLANTED_DEVICE, id), Phase::Up, out);
         }
     }
