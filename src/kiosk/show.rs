@@ -29,6 +29,9 @@ const LAND_US: u64 = 1_500_000;
 /// What one look may add to the time, µs: after a halt the hands go on where they were.
 const LONGEST_LOOK_US: u64 = 200_000;
 
+/// Parts of a table that a clip may fill, the best first.
+const SIZES: [f64; 5] = [1.0, 0.8, 0.64, 0.5, 0.4];
+
 /// A tick of the hands, when a clip is tried on a table, µs, and how long it is watched after its end.
 const TICK_US: u64 = 16_000;
 const TRIED_US: u64 = 1_000_000;
@@ -69,27 +72,21 @@ struct Clip {
 }
 
 impl Show {
-    /// A show for a table of `size_mm`, not yet begun. Clips whose hands would not be the same hands on this table
-    /// (on a small one fingers of two hands are as near as those of one) are left out.
+    /// A show for a table of `size_mm`, not yet begun. Clips fill the table as far as their hands stay the hands they
+    /// are (on a wall they would fall apart), and those whose hands run together on a small table are left out.
     pub fn new(size_mm: DVec2) -> Self {
         let files = PLAYLIST
             .iter()
             .filter_map(|text| read_gesture(text.as_bytes(), "show").ok());
         let clips = files.filter_map(|file| {
             let own = file.header.size_mm;
-            let seed = file.header.seed.unwrap_or_default();
             let clip = Clip {
-                seed,
+                seed: file.header.seed.unwrap_or_default(),
                 frames: file.frames,
             };
-            let fitted = clip.fitted(own, size_mm);
-            eprintln!(
-                "{size_mm} {:?} {:?} {:?}",
-                file.header.title,
-                clip.hands(own),
-                fitted.hands(size_mm)
-            );
-            (clip.hands(own) == fitted.hands(size_mm)).then_some(fitted)
+            let hands = clip.hands(own);
+            let sizes = SIZES.iter().map(|size| clip.fitted(own, size_mm, *size));
+            sizes.into_iter().find(|fitted| fitted.hands(size_mm) == hands)
         });
         Self {
             clips: clips.collect(),
@@ -184,9 +181,9 @@ impl Show {
 }
 
 impl Clip {
-    /// In the middle of a table of another size, as large as it fits.
-    fn fitted(&self, own: DVec2, size_mm: DVec2) -> Self {
-        let scale = (size_mm / own).min_element();
+    /// In the middle of a table of another size, filling `part` of it.
+    fn fitted(&self, own: DVec2, size_mm: DVec2, part: f64) -> Self {
+        let scale = part * (size_mm / own).min_element();
         let place = |at: DVec2| {
             let at = (at - own / 2.0) * scale + size_mm / 2.0;
             DVec2::new(quantise_mm(at.x), quantise_mm(at.y))
