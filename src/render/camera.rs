@@ -150,7 +150,10 @@ impl Camera {
                 DVec4::new(0.0, 0.0, 0.5, 1.0),
             ),
             Some(distance) => {
-                let (near, far) = ((distance - self.reach).max(distance * 0.02), distance + self.reach);
+                let (near, far) = (
+                    (distance - self.reach).max(distance * 0.02),
+                    distance + self.reach,
+                );
                 let depth = far / (far - near);
                 DMat4::from_cols(
                     DVec4::X * distance / half_width,
@@ -185,8 +188,12 @@ impl Camera {
 
     /// The ray through a pixel: a place on it and its direction, of unit length.
     pub fn ray(&self, px: DVec2) -> (DVec3, DVec3) {
-        let ndc = DVec2::new(px.x / self.viewport_px.x * 2.0 - 1.0, 1.0 - px.y / self.viewport_px.y * 2.0);
-        let across = self.right * (ndc.x * self.span / 2.0 * self.aspect()) + self.up * (ndc.y * self.span / 2.0);
+        let ndc = DVec2::new(
+            px.x / self.viewport_px.x * 2.0 - 1.0,
+            1.0 - px.y / self.viewport_px.y * 2.0,
+        );
+        let across =
+            self.right * (ndc.x * self.span / 2.0 * self.aspect()) + self.up * (ndc.y * self.span / 2.0);
         match self.distance {
             None => (self.target + across, self.forward),
             Some(distance) => (
@@ -245,7 +252,9 @@ mod tests {
         let camera = Camera::plan(LAND, WINDOW);
         let (corner, size) = plan_rect(LAND, WINDOW);
         for height in [-1.0 * KM, 0.0, 4.0 * KM] {
-            let north_west = camera.project(DVec3::new(0.0, LAND.height, height)).expect("seen");
+            let north_west = camera
+                .project(DVec3::new(0.0, LAND.height, height))
+                .expect("seen");
             let south_east = camera.project(DVec3::new(LAND.width, 0.0, height)).expect("seen");
             assert!(north_west.distance(corner) < 1e-6, "{north_west}");
             assert!(south_east.distance(corner + size) < 1e-6, "{south_east}");
@@ -260,7 +269,11 @@ mod tests {
     fn a_pixel_leads_back_to_its_place() {
         for t in [0.0, 0.01, 0.3, 1.0] {
             let camera = Camera::between(LAND, WINDOW, &aslant(), t);
-            for place in [DVec2::new(60.0, 40.0), DVec2::new(90.0, 60.0), DVec2::new(120.0, 50.0)] {
+            for place in [
+                DVec2::new(60.0, 40.0),
+                DVec2::new(90.0, 60.0),
+                DVec2::new(120.0, 50.0),
+            ] {
                 let place = place * KM;
                 let px = camera.project(place.extend(0.0)).expect("in front");
                 let back = camera.unproject(px).expect("ground");
@@ -271,9 +284,15 @@ mod tests {
 
     #[test]
     fn the_way_down_begins_at_the_plan_and_never_jumps() {
-        let places: Vec<DVec3> = [(0.0, 0.0), (178.0, 0.0), (178.0, 100.0), (0.0, 100.0), (89.0, 50.0)]
-            .map(|(x, y)| DVec3::new(x * KM, y * KM, 3.0 * KM))
-            .to_vec();
+        let places: Vec<DVec3> = [
+            (0.0, 0.0),
+            (178.0, 0.0),
+            (178.0, 100.0),
+            (0.0, 100.0),
+            (89.0, 50.0),
+        ]
+        .map(|(x, y)| DVec3::new(x * KM, y * KM, 3.0 * KM))
+        .to_vec();
         let steps = 4000;
         let mut before = Camera::plan(LAND, WINDOW);
         for step in 0..=steps {
@@ -309,7 +328,15 @@ mod tests {
 
     #[test]
     fn above_the_horizon_there_is_no_ground() {
-        let camera = Camera::between(LAND, WINDOW, &Oblique { depression: 0.1, ..aslant() }, 1.0);
+        let camera = Camera::between(
+            LAND,
+            WINDOW,
+            &Oblique {
+                depression: 0.1,
+                ..aslant()
+            },
+            1.0,
+        );
         assert_eq!(camera.unproject(DVec2::new(640.0, 0.0)), None);
         assert!(camera.unproject(DVec2::new(640.0, 700.0)).is_some());
     }

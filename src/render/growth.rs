@@ -129,12 +129,12 @@ impl Growth {
         self.ground.spacing = surface.spacing as f32;
         let rim = (1.5 * surface.spacing / raster.cell().x).min(f64::from(size[0].min(size[1])) / 4.0);
         self.ground.rim = rim.floor() as f32;
-        self.towards = (
-            lowland(&raster.data),
-            highest(raster).clamp(SUMMITS.0, SUMMITS.1),
+        self.towards = (lowland(&raster.data), highest(raster).clamp(SUMMITS.0, SUMMITS.1));
+        grid.new_height.fill(
+            &gpu.queue,
+            bytemuck::cast_slice(&raster.data),
+            size_of::<f32>() as u32,
         );
-        grid.new_height
-            .fill(&gpu.queue, bytemuck::cast_slice(&raster.data), size_of::<f32>() as u32);
         upload::water(surface, &mut self.bytes);
         grid.new_water.fill(&gpu.queue, &self.bytes, 2);
         upload::reaches(surface, &mut self.pieces);
@@ -163,7 +163,10 @@ impl Growth {
 
     /// The coloured land, and the texture whose first channel is the height in km.
     pub(super) fn seen(&self) -> Option<(&wgpu::TextureView, &wgpu::TextureView)> {
-        Some((&self.colours.as_ref()?.sheet.view, &self.grid.as_ref()?.stand.view))
+        Some((
+            &self.colours.as_ref()?.sheet.view,
+            &self.grid.as_ref()?.stand.view,
+        ))
     }
 
     /// Height of the plains and height of summits, metres, as drawn now.
@@ -181,7 +184,10 @@ impl Growth {
         dt_s: f32,
         halves: bool,
     ) {
-        let new_size = self.colours.as_ref().is_none_or(|colours| colours.sheet.size != size);
+        let new_size = self
+            .colours
+            .as_ref()
+            .is_none_or(|colours| colours.sheet.size != size);
         if self.settled() && !new_size {
             return;
         }
@@ -228,7 +234,11 @@ impl Growth {
             (from, height * (strip + 1) / strips - from)
         };
         work.light(encoder, self.newer, part(grid.light.size[1]));
-        let soaked = if whole || last { FIRST } else { (blend * strips as f32).min(1.0) };
+        let soaked = if whole || last {
+            FIRST
+        } else {
+            (blend * strips as f32).min(1.0)
+        };
         work.soak(encoder, part(size[1]), soaked);
         work.sheet(encoder, self.newer, &self.ramps, part(size[1]));
         self.strip = if strip + 1 >= strips { 0 } else { strip + 1 };
@@ -252,7 +262,11 @@ impl Growth {
             variation: Sheet::new(device, "variation", passes::LIGHT, size),
             sheet: Sheet::with_halves(device, "sheet", passes::SHEET, size),
         };
-        let looks = group(device, &pipelines.variation, &[(0, self.uniform.as_entire_binding())]);
+        let looks = group(
+            device,
+            &pipelines.variation,
+            &[(0, self.uniform.as_entire_binding())],
+        );
         let mut pass = pass(encoder, "variation", &[&colours.variation.view], CLEAR);
         pass.set_pipeline(&pipelines.variation);
         pass.set_bind_group(0, &looks, &[]);
@@ -346,7 +360,11 @@ impl Work<'_> {
 
     fn rivers(&self, encoder: &mut wgpu::CommandEncoder, reaches: &wgpu::Buffer, count: u32) {
         let pipeline = &self.pipelines.river;
-        let looks = group(&self.gpu.device, pipeline, &[(0, self.uniform.as_entire_binding())]);
+        let looks = group(
+            &self.gpu.device,
+            pipeline,
+            &[(0, self.uniform.as_entire_binding())],
+        );
         let mut pass = pass(encoder, "rivers", &[&self.colours.fresh_rivers.view], CLEAR);
         if count > 0 {
             pass.set_pipeline(pipeline);
@@ -361,7 +379,11 @@ impl Work<'_> {
             return;
         }
         let pipeline = &self.pipelines.soak;
-        let looks = group(&self.gpu.device, pipeline, &[(1, look(&self.colours.fresh_rivers))]);
+        let looks = group(
+            &self.gpu.device,
+            pipeline,
+            &[(1, look(&self.colours.fresh_rivers))],
+        );
         let mut pass = pass(encoder, "soak", &[&self.colours.rivers.view], wgpu::LoadOp::Load);
         let share = f64::from(share);
         pass.set_blend_constant(wgpu::Color {
@@ -424,12 +446,17 @@ fn look(sheet: &Sheet) -> wgpu::BindingResource<'_> {
 
 impl Grid {
     fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
-        let sheet = |name, format, cells: u32| Sheet::new(device, name, format, size.map(|side| side.div_ceil(cells)));
+        let sheet = |name, format, cells: u32| {
+            Sheet::new(device, name, format, size.map(|side| side.div_ceil(cells)))
+        };
         Self {
             size,
             new_height: sheet("new height", passes::HEIGHT, 1),
             new_water: sheet("new water", passes::NEW_WATER, 1),
-            height: [sheet("height", passes::HEIGHT, 1), sheet("height", passes::HEIGHT, 1)],
+            height: [
+                sheet("height", passes::HEIGHT, 1),
+                sheet("height", passes::HEIGHT, 1),
+            ],
             water: [sheet("water", passes::WATER, 1), sheet("water", passes::WATER, 1)],
             slopes: sheet("slopes", passes::SHAPE, 1),
             stand: sheet("stand", passes::SHAPE, 1),
@@ -476,7 +503,12 @@ fn ramps(gpu: &Gpu) -> Sheet {
             texels.extend([red, green, blue, 255]);
         }
     }
-    let sheet = Sheet::new(&gpu.device, "ramps", passes::SHEET, [columns, RAMP_ROWS.len() as u32]);
+    let sheet = Sheet::new(
+        &gpu.device,
+        "ramps",
+        passes::SHEET,
+        [columns, RAMP_ROWS.len() as u32],
+    );
     sheet.fill(&gpu.queue, &texels, 4);
     sheet
 }

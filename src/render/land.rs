@@ -137,7 +137,10 @@ impl LandRenderer {
     }
 
     /// Draws the land, `dt_s` seconds after the frame before, over all of a target of `size_px`.
-    #[expect(clippy::too_many_arguments, reason = "where, what, how and when of one picture")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "where, what, how and when of one picture"
+    )]
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -156,8 +159,14 @@ impl LandRenderer {
         let texels = (size * per_pixel).round();
         let texels = [texels.x, texels.y].map(|side| (side as u32).clamp(16, most));
         self.growth.exaggerate(style.exaggeration);
-        self.growth
-            .step(gpu, &self.pipelines, encoder, texels, dt_s, tilted || per_pixel > 1.0);
+        self.growth.step(
+            gpu,
+            &self.pipelines,
+            encoder,
+            texels,
+            dt_s,
+            tilted || per_pixel > 1.0,
+        );
         let (lowland, summit) = self.growth.heights();
         let cells = self.mesh_cells();
         let (half_width, half_height) = camera.half_view();
@@ -285,7 +294,11 @@ impl LandRenderer {
         let colour = if self.encoded {
             linear(hex)
         } else {
-            Vec3::new((hex >> 16 & 0xff) as f32, (hex >> 8 & 0xff) as f32, (hex & 0xff) as f32) / 255.0
+            Vec3::new(
+                (hex >> 16 & 0xff) as f32,
+                (hex >> 8 & 0xff) as f32,
+                (hex & 0xff) as f32,
+            ) / 255.0
         };
         wgpu::Color {
             r: f64::from(colour.x),

@@ -120,7 +120,15 @@ const FARTHEST_LOOK: f64 = 110.0;
 
 /// Rows of the ramp texture.
 pub(super) const RAMP_ROWS: [&str; 9] = [
-    "OPEN", "WOOD", "ROCK", "SCREE", "SNOW", "WATER_MEADOW", "SHALLOW", "DEEP", "SHORE",
+    "OPEN",
+    "WOOD",
+    "ROCK",
+    "SCREE",
+    "SNOW",
+    "WATER_MEADOW",
+    "SHALLOW",
+    "DEEP",
+    "SHORE",
 ];
 
 /// Factor from one step to the next, so that `steps` steps from `first` cells reach [`FARTHEST_LOOK`].
@@ -142,18 +150,31 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
     constant("MEADOW", &float(f64::from(MEADOW)));
     constant("GULLIES", &GULLIES);
     constant("SUN_STEPS", &light.sun_steps);
-    constant("SUN_STRIDE", &float(stride(light.sun_steps, 0.9 * f64::from(LIGHT_CELLS))));
+    constant(
+        "SUN_STRIDE",
+        &float(stride(light.sun_steps, 0.9 * f64::from(LIGHT_CELLS))),
+    );
     constant("SKY_DIRECTIONS", &light.sky_directions);
     constant("SKY_STEPS", &light.sky_steps);
-    constant("SKY_STRIDE", &float(stride(light.sky_steps, 1.2 * f64::from(LIGHT_CELLS))));
+    constant(
+        "SKY_STRIDE",
+        &float(stride(light.sky_steps, 1.2 * f64::from(LIGHT_CELLS))),
+    );
     constant("PENUMBRA_LOW", &float(f64::from(penumbra.0)));
     constant("PENUMBRA_HIGH", &float(f64::from(penumbra.1)));
     constant("RAMPS", &float(RAMP_ROWS.len() as f64));
     for (row, name) in RAMP_ROWS.iter().enumerate() {
         constant(name, &float(row as f64));
     }
-    let own = SHADERS.iter().find(|(other, _)| *other == name).map_or("", |(_, own)| own);
-    let shared = if matches!(name, "land" | "shrink") { "" } else { GROUND };
+    let own = SHADERS
+        .iter()
+        .find(|(other, _)| *other == name)
+        .map_or("", |(_, own)| own);
+    let shared = if matches!(name, "land" | "shrink") {
+        ""
+    } else {
+        GROUND
+    };
     let noise = if name == "sheet" { SHADERS[2].1 } else { "" };
     format!("{text}{shared}{noise}{own}")
 }

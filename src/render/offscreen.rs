@@ -37,8 +37,18 @@ pub fn picture(
     let target = Sheet::new(&gpu.device, "picture", FORMAT, [width, height]);
     let mut encoder = gpu
         .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
-    land.draw(gpu, &mut encoder, &target.view, [width, height], camera, style, 1.0);
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("picture"),
+        });
+    land.draw(
+        gpu,
+        &mut encoder,
+        &target.view,
+        [width, height],
+        camera,
+        style,
+        1.0,
+    );
     let pixels = read(gpu, encoder, &target)?;
     RgbaImage::from_raw(width, height, pixels)
         .ok_or_else(|| GpuError::Refused("the picture came back incomplete".to_owned()))

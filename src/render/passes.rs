@@ -50,14 +50,20 @@ struct Recipe<'a> {
 }
 
 impl Pipelines {
-    pub(super) fn new(device: &wgpu::Device, target: wgpu::TextureFormat, light: LightQuality, samples: u32) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        target: wgpu::TextureFormat,
+        light: LightQuality,
+        samples: u32,
+    ) -> Self {
         let module = |name: &str| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(name),
                 source: wgpu::ShaderSource::Wgsl(layout::source(name, light, PENUMBRA).into()),
             })
         };
-        let [grow, relief, noise, rivers, sheet, land, shrink] = layout::SHADERS.map(|(name, _)| module(name));
+        let [grow, relief, noise, rivers, sheet, land, shrink] =
+            layout::SHADERS.map(|(name, _)| module(name));
         let onto = |name, module, fragment, targets| {
             Recipe {
                 name,
@@ -114,8 +120,20 @@ impl Pipelines {
             sheet: onto("sheet", &sheet, "sheet", &[plain(SHEET)]),
             shrink: onto("shrink", &shrink, "shrink", &[plain(SHEET)]),
             plan: seen("plan", "plan_quad", "plan", None, 1),
-            sky: seen("sky", "sky_cover", "sky", Some(wgpu::CompareFunction::Always), samples),
-            terrain: seen("terrain", "mesh", "terrain", Some(wgpu::CompareFunction::Less), samples),
+            sky: seen(
+                "sky",
+                "sky_cover",
+                "sky",
+                Some(wgpu::CompareFunction::Always),
+                samples,
+            ),
+            terrain: seen(
+                "terrain",
+                "mesh",
+                "terrain",
+                Some(wgpu::CompareFunction::Less),
+                samples,
+            ),
         }
     }
 }
@@ -199,12 +217,22 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    pub(super) fn new(device: &wgpu::Device, name: &str, format: wgpu::TextureFormat, size: [u32; 2]) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        name: &str,
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Self {
         Self::with(device, name, format, size, 1, 1)
     }
 
     /// With its halves, down to a few texels.
-    pub(super) fn with_halves(device: &wgpu::Device, name: &str, format: wgpu::TextureFormat, size: [u32; 2]) -> Self {
+    pub(super) fn with_halves(
+        device: &wgpu::Device,
+        name: &str,
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Self {
         let levels = size[0].min(size[1]).ilog2().saturating_sub(2).max(1);
         Self::with(device, name, format, size, levels, 1)
     }
@@ -233,7 +261,10 @@ impl Sheet {
         let usage = if samples > 1 {
             drawn
         } else {
-            drawn | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC
+            drawn
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_DST
+                | wgpu::TextureUsages::COPY_SRC
         };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some(name),
