@@ -27,7 +27,7 @@ const LABEL_FROM: f32 = 0.35;
 
 /// Draws the controls, with `strength` (0 to 1) of their opacity.
 pub fn draw(painter: &Painter, sight: &Sight<'_>, controls: &[ControlView], strength: f32) {
-    let pen = Pen { painter, sight };
+    let pen = Pen::new(painter, sight);
     for view in controls {
         if let Some(centre) = sight.of_table(view.centre_mm) {
             let control = Control::new(pen, view, centre, strength);
@@ -80,8 +80,9 @@ impl<'a> Control<'a> {
         }
     }
 
+    /// Half of its size, in millimetres of the pen.
     fn half(&self) -> Vec2 {
-        vec2(self.view.half_size_mm.x as f32, self.view.half_size_mm.y as f32)
+        vec2(self.view.half_size_mm.x as f32, self.view.half_size_mm.y as f32) / self.pen.scale
     }
 
     fn disc(&self) {

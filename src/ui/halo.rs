@@ -185,7 +185,7 @@ impl Halos {
 
     /// Draws ripples and halos. To be called after everything else is drawn.
     pub fn draw(&self, painter: &Painter, sight: &Sight<'_>, now_s: f64) {
-        let pen = Pen { painter, sight };
+        let pen = Pen::at_least(painter, sight, 0.7);
         for ripple in &self.ripples {
             if let Some(at) = sight.of_table(ripple.at) {
                 ripple.draw(pen, at, now_s);

@@ -161,7 +161,7 @@ impl Chart {
         if strength <= 0.0 {
             return;
         }
-        let pen = Pen { painter, sight };
+        let pen = Pen::new(painter, sight);
         for shown in &self.faults {
             fault(pen, &shown.mark, strength * shown.presence(now_s));
         }

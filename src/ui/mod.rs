@@ -20,6 +20,7 @@ pub mod palette;
 mod pen;
 pub mod readouts;
 mod sight;
+pub mod staff;
 pub mod warning;
 mod words;
 

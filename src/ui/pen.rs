@@ -1,4 +1,4 @@
-//! Lines, rings and light, in millimetres of the table.
+//! Lines, rings and light, in millimetres.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -16,6 +16,12 @@ const BED: f32 = 0.42;
 
 /// How much wider than its line the bed is, mm.
 const BED_WIDER: f32 = 1.7;
+
+/// Short side of the table that the marks are designed for, mm.
+const USUAL_DEPTH: f32 = 680.0;
+
+/// Least and greatest scale of marks for other tables.
+const SCALES: (f32, f32) = (0.3, 1.4);
 
 /// How a line looks.
 #[derive(Clone, Copy)]
@@ -45,12 +51,34 @@ impl Line {
 pub(super) struct Pen<'a> {
     pub(super) painter: &'a Painter,
     pub(super) sight: &'a Sight<'a>,
+    /// Millimetres of the table for one of the pen.
+    pub(super) scale: f32,
 }
 
-impl Pen<'_> {
-    /// Points for `mm`.
+impl<'a> Pen<'a> {
+    /// A pen for marks of the map: its millimetres are those of a table 680 mm deep, and shrink with smaller ones.
+    pub(super) fn new(painter: &'a Painter, sight: &'a Sight<'a>) -> Self {
+        Self::at_least(painter, sight, SCALES.0)
+    }
+
+    /// A pen for what surrounds a finger, which does not shrink with the table: not below `least`.
+    pub(super) fn at_least(painter: &'a Painter, sight: &'a Sight<'a>, least: f32) -> Self {
+        let depth = sight.map().size_mm().min_element() as f32 / USUAL_DEPTH;
+        let scale = if depth.is_finite() {
+            depth.clamp(least, SCALES.1)
+        } else {
+            1.0
+        };
+        Self {
+            painter,
+            sight,
+            scale,
+        }
+    }
+
+    /// Points for `mm` of the pen.
     pub(super) fn mm(&self, mm: f32) -> f32 {
-        self.sight.mm(mm)
+        self.sight.mm(mm * self.scale)
     }
 
     fn stroke(&self, colour: Color32, strength: f32, width: f32) -> Stroke {

@@ -117,7 +117,7 @@ fn decimal(value: f64, decimals: usize) -> String {
 /// Draws the strip of a side at the right end of its edge. `shown` (0 to 1) is its opacity: at 0 only what must be
 /// told is drawn.
 pub fn draw(painter: &Painter, sight: &Sight<'_>, readings: &Readings<'_>, side: Side, shown: f32) {
-    let pen = Pen { painter, sight };
+    let pen = Pen::new(painter, sight);
     if shown > 0.0 {
         strip(pen, &readings.cells(true), side, shown, true);
     }
@@ -203,7 +203,7 @@ impl Strip<'_> {
     /// A round number of kilometres, in four alternating parts.
     fn scale_bar(&mut self) {
         let km_per_mm = self.pen.sight.map().metres_per_mm() / KM;
-        let km = round_below(BAR * km_per_mm);
+        let km = round_below(BAR * f64::from(self.pen.scale) * km_per_mm);
         let label = format!("{km} km");
         let small = self.size(SIZES.1);
         let width = lettering::width(self.pen.painter, &label, small);
@@ -215,7 +215,7 @@ impl Strip<'_> {
             LAMP.gamma_multiply(0.75),
         );
         self.used += width + self.pen.mm(3.0);
-        let length = self.pen.mm((km / km_per_mm) as f32);
+        let length = self.pen.sight.mm((km / km_per_mm) as f32);
         for part in 0..4 {
             let (right, left) = (part as f32 / 4.0 * length, (part + 1) as f32 / 4.0 * length);
             let ends = [self.at(self.used + left, 0.0), self.at(self.used + right, 0.0)];
@@ -233,10 +233,11 @@ fn strip(pen: Pen<'_>, cells: &[Cell], side: Side, shown: f32, scale: bool) {
     }
     // The corner at the right hand of whoever stands at that side.
     let size = pen.sight.map().size_mm();
-    let inset = f64::from(MARGIN + TALL / 2.0);
+    let margin = f64::from(MARGIN * pen.scale);
+    let inset = f64::from((MARGIN + TALL / 2.0) * pen.scale);
     let corner = match side {
-        Side::South => glam::DVec2::new(size.x - f64::from(MARGIN), size.y - inset),
-        Side::North => glam::DVec2::new(f64::from(MARGIN), inset),
+        Side::South => glam::DVec2::new(size.x - margin, size.y - inset),
+        Side::North => glam::DVec2::new(margin, inset),
     };
     let Some(end) = pen.sight.of_table(corner) else {
         return;

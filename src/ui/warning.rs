@@ -22,7 +22,7 @@ const RADIUS: f32 = 74.0;
 
 /// Draws the warning over all of `screen` (points): `left_ms` of `whole_ms` until the reset.
 pub fn draw(painter: &Painter, sight: &Sight<'_>, screen: Rect, left_ms: u64, whole_ms: u64) {
-    let pen = Pen { painter, sight };
+    let pen = Pen::new(painter, sight);
     let gone_ms = whole_ms.saturating_sub(left_ms) as f64;
     let shown = ease::smooth(gone_ms / DIMS);
     painter.rect_filled(screen, 0.0, faded(ROOM, 0.66 * shown));

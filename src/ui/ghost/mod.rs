@@ -33,7 +33,7 @@ const LEAST: f64 = 3.0;
 
 /// Draws the hands of a lesson, with what they leave on the land.
 pub fn draw(painter: &Painter, sight: &Sight<'_>, hands: &[GhostHand]) {
-    let pen = Pen { painter, sight };
+    let pen = Pen::new(painter, sight);
     let hands: Vec<Ghost<'_>> = hands.iter().filter_map(Ghost::new).collect();
     range(pen, &hands);
     for ghost in &hands {
