@@ -102,15 +102,73 @@ const RULES: &[Rule] = &[
         ],
         reason: "sources know no world",
     },
+    Rule {
+        module: "instrument",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::picture",
+            "crate::kiosk",
+        ],
+        reason: "the instrument sees marks and a clock, and no world",
+    },
+    Rule {
+        module: "kiosk",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::surface",
+            "crate::live",
+            "crate::picture",
+            "crate::instrument",
+        ],
+        reason: "the circle knows contacts and times",
+    },
+    Rule {
+        module: "settings",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::surface",
+            "crate::live",
+            "crate::picture",
+            "crate::instrument",
+            "crate::kiosk",
+        ],
+        reason: "settings are read by all and read nobody",
+    },
 ];
 
 /// Modules that must run without window, card, clock and environment: all but the command line.
-const CORE: [&str; 9] = [
-    "units", "gesture", "mountain", "terrain", "surface", "sim", "report", "picture", "input",
+const CORE: [&str; 12] = [
+    "units",
+    "gesture",
+    "mountain",
+    "terrain",
+    "surface",
+    "sim",
+    "instrument",
+    "kiosk",
+    "settings",
+    "report",
+    "picture",
+    "input",
 ];
 /// Modules that must not touch files: they read and write through `Read` and `Write`, or not at all.
-const WITHOUT_FILES: [&str; 7] = [
-    "units", "gesture", "mountain", "terrain", "surface", "sim", "report",
+const WITHOUT_FILES: [&str; 10] = [
+    "units",
+    "gesture",
+    "mountain",
+    "terrain",
+    "surface",
+    "sim",
+    "instrument",
+    "kiosk",
+    "settings",
+    "report",
 ];
 
 /// Code of a file without comments, doc comments and its test module.
