@@ -7,10 +7,11 @@ use glam::DVec2;
 use super::control::{ControlId, ControlKind, ControlView};
 use super::deed::{Deed, EditView, Key, Route, Scene};
 use super::edit::Edit;
+use super::history;
 use super::layout::{Placed, layout};
 use super::press::{Finger, Press};
 use super::speed;
-use crate::gesture::command::{Action, Command, MAX_YEARS, Tool};
+use crate::gesture::command::{Action, Command, Tool};
 use crate::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Side, Source};
 use crate::gesture::params::GestureParams;
 use crate::live::Clock;
@@ -25,9 +26,6 @@ const QUIET_US: f64 = 1_200_000.0;
 
 /// Longest time between two looks that counts for glow, µs: after a halt controls do not flash.
 const LONGEST_TICK_US: u64 = 100_000;
-
-/// One step through the land's history by keys, as a part of it.
-const HISTORY_STEP: f64 = 0.05;
 
 /// What an instrument is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,16 +180,8 @@ impl Instrument {
                 return self.command(Some(Action::Speed(pace)), Side::South, None);
             }
             Key::Back | Key::Forward if down => {
-                let step = if key == Key::Forward {
-                    HISTORY_STEP
-                } else {
-                    -HISTORY_STEP
-                };
-                let years = self.years_at((self.place_in_history() + step).clamp(0.0, 1.0));
-                if self.has_history() {
-                    self.command(Some(Action::Scrub(years)), Side::South, None);
-                }
-                return;
+                let years = history::stepped(&self.clock, key == Key::Forward);
+                return self.command(years.map(Action::Scrub), Side::South, None);
             }
             Key::Faster | Key::Slower | Key::Back | Key::Forward => return,
         };
@@ -447,34 +437,14 @@ impl Instrument {
         let (Some(placed), Some(press)) = (placed, self.presses.get_mut(&id)) else {
             return;
         };
-        if id.1 != ControlKind::Scrub || self.clock.history_yr.1 <= self.clock.history_yr.0 {
+        if id.1 != ControlKind::Scrub || !history::exists(&self.clock) {
             return;
         }
         if let Some(part) = press.follow(placed.along(press.at), now_us) {
             let contact = press.finger.contact();
-            let years = self.years_at(part);
+            let years = history::years_at(&self.clock, part);
             self.command(Some(Action::Scrub(years)), id.0, contact);
         }
-    }
-
-    fn has_history(&self) -> bool {
-        self.clock.history_yr.1 > self.clock.history_yr.0
-    }
-
-    /// Where the clock stands in the land's history, 0–1.
-    fn place_in_history(&self) -> f64 {
-        let (first, last) = self.clock.history_yr;
-        if self.has_history() {
-            ((self.clock.elapsed_yr - first) / (last - first)).clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// Whole years at a place in the land's history.
-    fn years_at(&self, part: f64) -> f64 {
-        let (first, last) = self.clock.history_yr;
-        (first + (last - first) * part).round().clamp(0.0, MAX_YEARS)
     }
 
     fn view(&self, placed: &Placed, glow: f64) -> ControlView {
@@ -497,13 +467,15 @@ impl Instrument {
             },
             enabled: match kind {
                 ControlKind::Undo => self.clock.can_undo[side as usize],
-                ControlKind::Scrub => self.has_history(),
+                ControlKind::Scrub => history::exists(&self.clock),
                 _ => true,
             },
             value: match kind {
                 ControlKind::Speed => speed::place(self.clock.pace_yr_per_s),
                 // While a finger drags it, the slider is where the finger is: the land follows.
-                ControlKind::Scrub => press.map_or_else(|| self.place_in_history(), |p| placed.along(p.at)),
+                ControlKind::Scrub => {
+                    press.map_or_else(|| history::place(&self.clock), |p| placed.along(p.at))
+                }
                 _ => 0.0,
             },
             glow: if press.is_some() { 1.0 } else { glow },

@@ -208,8 +208,7 @@ impl Kiosk {
     fn somebody(&mut self) {
         self.present_ms = self.lived.total();
         match self.stage {
-            Stage::Attract | Stage::Reset => self.enter(Stage::Invite),
-            Stage::Warning { sculpted: false } => self.enter(Stage::Invite),
+            Stage::Attract | Stage::Reset | Stage::Warning { sculpted: false } => self.enter(Stage::Invite),
             Stage::Warning { sculpted: true } => self.enter(Stage::Play),
             Stage::Invite | Stage::Play => {}
         }
@@ -233,7 +232,7 @@ impl Kiosk {
                 });
             }
             Stage::Warning { .. } if self.in_stage_ms() >= self.params.countdown_ms => {
-                self.enter(Stage::Reset)
+                self.enter(Stage::Reset);
             }
             Stage::Invite | Stage::Play | Stage::Warning { .. } => {}
         }
