@@ -90,7 +90,7 @@ impl Readings<'_> {
                 lit: clock.paused,
             });
         }
-        if (self.exaggeration - 1.0).abs() > 1e-3 {
+        if (self.exaggeration - 1.0).abs() >= 0.05 {
             cells.push(Cell {
                 figure: Figure::Exaggeration,
                 text: format!("×{}", decimal(self.exaggeration, 1)),
