@@ -355,6 +355,17 @@ fn where_work_must_not_go_nothing_is_ever_reset() {
 }
 
 #[test]
+fn the_finger_that_asks_for_a_reset_does_not_begin_a_visit_by_lifting() {
+    let mut table = Table::at(Kind::Play);
+    table.down(1);
+    table.kiosk.reset(table.now_ms);
+    table.wait(200);
+    table.up(1);
+    table.wait(RESET_MS);
+    assert_eq!(table.kind(), Kind::Attract);
+}
+
+#[test]
 fn times_come_from_the_settings() {
     let settings = Settings::default();
     assert_eq!(KioskParams::new(&settings.kiosk, true), params());

@@ -55,6 +55,7 @@ pub struct Instrument {
     /// Tools and figures of the north and south side.
     tools: [Tool; 2],
     readouts: [bool; 2],
+    pointer: Option<DVec2>,
     clock: Clock,
     now_us: u64,
     deeds: Vec<Deed>,
@@ -102,6 +103,7 @@ impl Instrument {
             presses: BTreeMap::new(),
             tools: [Tool::Push; 2],
             readouts: [params.readouts; 2],
+            pointer: None,
             clock: Clock::default(),
             now_us: 0,
             deeds: Vec::new(),
@@ -196,16 +198,19 @@ impl Instrument {
         }
     }
 
+    /// The mouse's pointer is there (table mm): it wakes controls as a hand does.
+    pub fn point(&mut self, pointer: Option<DVec2>) {
+        self.pointer = pointer;
+    }
+
     /// Time goes on: what is held long enough acts, arrows and the slider follow their fingers, controls wake and
     /// become quiet. To be called once a frame.
     pub fn tick(&mut self, now_us: u64, scene: &Scene<'_>) {
         let passed_us = now_us.saturating_sub(self.now_us).min(LONGEST_TICK_US) as f64;
         self.look(now_us, scene);
         for (i, placed) in self.placed.iter().enumerate() {
-            let hands = self.contacts.values();
-            let near = hands
-                .map(|held| placed.distance(held.at))
-                .fold(f64::INFINITY, f64::min);
+            let hands = self.contacts.values().map(|held| held.at).chain(self.pointer);
+            let near = hands.map(|at| placed.distance(at)).fold(f64::INFINITY, f64::min);
             let goal = (1.0 - near / GLOW_REACH_MM).max(0.0);
             let time = if goal > self.glow[i] { WAKE_US } else { QUIET_US };
             self.glow[i] += (goal - self.glow[i]) * (1.0 - (-passed_us / time).exp());
