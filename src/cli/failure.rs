@@ -8,6 +8,10 @@ pub(super) enum Failure {
     /// Bad usage or bad input: the line names the file, line or field and what was expected. Exit code 2.
     #[error("{0}")]
     Input(String),
+    /// No display or no usable graphics where one is required; the line says what to do. Exit code 3.
+    #[cfg(feature = "app")]
+    #[error("{0}")]
+    NoDisplay(String),
     /// Anything else. Exit code 1.
     #[error("{0}")]
     Other(String),
@@ -28,6 +32,8 @@ impl Failure {
     pub(super) fn code(&self) -> ExitCode {
         match self {
             Self::Input(_) => ExitCode::from(2),
+            #[cfg(feature = "app")]
+            Self::NoDisplay(_) => ExitCode::from(3),
             Self::Other(_) => ExitCode::FAILURE,
         }
     }

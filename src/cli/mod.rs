@@ -7,6 +7,8 @@ mod failure;
 mod import;
 mod output;
 mod replay;
+#[cfg(feature = "app")]
+mod table;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -19,12 +21,21 @@ use failure::Failure;
 
 /// Put both hands on the table and push: each hand is a tectonic plate, and between them mountains rise.
 ///
-/// Without a command Orogen plays its built-in session into ./orogen-out and names the pictures.
+/// Without a command Orogen opens the table, full screen. Where there is no display or no graphics, it says so, plays
+/// its built-in session into ./orogen-out and names the pictures.
 #[derive(Debug, Parser)]
-#[command(name = "orogen", version, propagate_version = true)]
+#[command(
+    name = "orogen",
+    version,
+    propagate_version = true,
+    args_conflicts_with_subcommands = true
+)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    #[cfg(feature = "app")]
+    #[command(flatten)]
+    table: TableArgs,
     /// Say only what went wrong.
     #[arg(long, short, global = true)]
     quiet: bool,
@@ -32,6 +43,9 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// The table for unattended machines: no way out for visitors, and no fall-back without a display.
+    #[cfg(feature = "app")]
+    Kiosk(TableArgs),
     /// Play gesture files (none: the built-in session) through the same code as the table, without a display.
     Replay(ReplayArgs),
     /// Erode a terrain in batch: uplift in, eroded land out.
@@ -40,6 +54,30 @@ enum Command {
     Import(ImportArgs),
     /// Is this machine fast enough? Every stage at the sizes of the literature.
     Bench(BenchArgs),
+}
+
+/// How the table opens.
+#[cfg(feature = "app")]
+#[derive(Clone, Debug, Default, Args)]
+struct TableArgs {
+    /// A window instead of the full screen.
+    #[arg(long)]
+    windowed: bool,
+    /// Size of the window in pixels; implies --windowed.
+    #[arg(long, value_name = "WxH", value_parser = table::window_size)]
+    size: Option<[u32; 2]>,
+    /// Which monitor, counted from 1 (default: the primary one).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    monitor: Option<u16>,
+    /// Which world to begin with.
+    #[arg(long, value_enum)]
+    mode: Option<table::ModeChoice>,
+    /// Settings file (TOML); it is written when staff save their changes.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// Write figures as JSON lines, one each second.
+    #[arg(long, value_name = "FILE")]
+    metrics: Option<PathBuf>,
 }
 
 /// Which pictures to draw.
@@ -193,7 +231,12 @@ pub fn main() -> ExitCode {
     };
     let console = Console::new(cli.quiet);
     let done = match cli.command {
+        #[cfg(feature = "app")]
+        None => table::open(&cli.table, console),
+        #[cfg(not(feature = "app"))]
         None => replay::builtin(console),
+        #[cfg(feature = "app")]
+        Some(Command::Kiosk(args)) => table::kiosk(&args),
         Some(Command::Replay(args)) => replay::run(&args, console),
         Some(Command::Erode(args)) => erode::run(&args, console),
         Some(Command::Import(args)) => import::run(&args),

@@ -161,24 +161,42 @@ fn play(stem: &str, file: &GestureFile, args: &ReplayArgs, console: Console) -> 
     bar.finish_and_clear();
     timings.lap("run_on");
 
-    let flow = sim.flow();
-    let report = Report::of_session(&title, &sim, &flow);
-    let k = vec![sim.params().erosion.k; sim.world().tin.len()];
-    land_of(&sim, &flow, &k, &title).write(&out, args.common.size, args.common.picture, &mut timings)?;
-    write_json(&out, "report.json", &report)?;
-    write_json(&out, "timings.json", &timings.finish())?;
-    if report.quarantine.steps > 0 {
-        Console::warn(&format!(
-            "{} steps held numbers that are none and were thrown away",
-            report.quarantine.steps
-        ));
-    }
+    write_session(
+        &sim,
+        &title,
+        &out,
+        (args.common.size, args.common.picture),
+        timings,
+    )?;
     let shown = if args.common.picture == PictureChoice::None {
         "report.json"
     } else {
         "picture.png"
     };
     Console::result(&out.path().join(shown).display().to_string());
+    Ok(())
+}
+
+/// Writes all files of a session's land: pictures `size` pixels wide, maps, meshes, the report.
+pub(super) fn write_session(
+    sim: &Sim,
+    title: &str,
+    out: &OutDir,
+    (size, picture): (u32, PictureChoice),
+    mut timings: Timings,
+) -> Result<(), Failure> {
+    let flow = sim.flow();
+    let report = Report::of_session(title, sim, &flow);
+    let k = vec![sim.params().erosion.k; sim.world().tin.len()];
+    land_of(sim, &flow, &k, title).write(out, size, picture, &mut timings)?;
+    write_json(out, "report.json", &report)?;
+    write_json(out, "timings.json", &timings.finish())?;
+    if report.quarantine.steps > 0 {
+        Console::warn(&format!(
+            "{} steps held numbers that are none and were thrown away",
+            report.quarantine.steps
+        ));
+    }
     Ok(())
 }
 

@@ -65,6 +65,23 @@ pub struct Contact {
     pub confidence: Option<f32>,
 }
 
+impl Contact {
+    /// The contact as a gesture file gives it back: positions and sizes on the file's raster, confidence in thousandths,
+    /// and nothing where a device tells nonsense. Who plays this live can replay it to the bit.
+    #[must_use]
+    pub fn as_recorded(self) -> Self {
+        let millimetres = |mm: DVec2| DVec2::new(quantise_mm(mm.x), quantise_mm(mm.y));
+        let size = self.size_mm.filter(|size| size.is_finite());
+        let confidence = self.confidence.filter(|c| (0.0..=1.0).contains(c));
+        Self {
+            key: self.key,
+            position: millimetres(self.position),
+            size_mm: size.map(|size| millimetres(size.clamp(DVec2::ZERO, DVec2::splat(MAX_COORDINATE_MM)))),
+            confidence: confidence.map(|c| ((f64::from(c) * 1000.0).round() / 1000.0) as f32),
+        }
+    }
+}
+
 /// What happens to a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Phase {

@@ -29,6 +29,24 @@ pub struct Frame {
     pub steps: u64,
 }
 
+impl Frame {
+    /// A frame of `surface` before anything has happened.
+    pub fn new(surface: Surface) -> Self {
+        Self {
+            sequence: 0,
+            land: 0,
+            surface,
+            hands: Vec::new(),
+            clock: Clock::default(),
+            contacts: ContactStats::default(),
+            counts: SessionCounts::default(),
+            quarantine: Quarantine::default(),
+            panics: 0,
+            steps: 0,
+        }
+    }
+}
+
 /// The geological clock and the figures that go with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {

@@ -4,12 +4,15 @@ use std::sync::Arc;
 
 use super::step::{Sim, Snapshot};
 use super::world::Totals;
-use crate::gesture::command::{Action, Command, REACH_MM};
+use crate::gesture::command::{Action, Command};
 use crate::gesture::contact::Side;
 use crate::mountain::PlateSet;
 use crate::mountain::strata::Strata;
 use crate::terrain::StartLand;
 use crate::units::MYR;
+
+/// How near to a tip or a fault an edit must be, table mm: the width of a finger and a bit.
+const REACH_MM: f64 = 25.0;
 
 impl Sim {
     /// Keeps the land as it is for undo.

@@ -27,6 +27,11 @@ impl Checkpoint {
         self
     }
 
+    /// Ticks done at that moment.
+    pub fn ticks(&self) -> u64 {
+        self.state.tick
+    }
+
     /// The world of that moment.
     pub fn world(&self) -> &World {
         &self.state.world

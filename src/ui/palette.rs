@@ -41,7 +41,7 @@ pub fn of_hand(hand: HandId) -> Color32 {
 }
 
 /// `colour` with `strength` (0 to 1; what is outside is brought inside) of its opacity.
-pub(super) fn faded(colour: Color32, strength: f32) -> Color32 {
+pub(crate) fn faded(colour: Color32, strength: f32) -> Color32 {
     colour.gamma_multiply(if strength > 0.0 { strength.min(1.0) } else { 0.0 })
 }
 

@@ -20,6 +20,29 @@ const DIMS: f64 = 1500.0;
 /// Radius of the ring, mm.
 const RADIUS: f32 = 74.0;
 
+/// Draws, over all of `screen` (points), for how many seconds touches still do nothing while the table is wiped.
+pub fn clean(painter: &Painter, sight: &Sight<'_>, screen: Rect, left_s: f64) {
+    painter.rect_filled(screen, 0.0, faded(ROOM, 0.85));
+    let Some(centre) = sight.of_table(sight.map().size_mm() / 2.0) else {
+        return;
+    };
+    let pen = Pen::new(painter, sight);
+    let seconds = left_s.ceil().to_string();
+    for side in [Side::South, Side::North] {
+        let turn = turn(side);
+        let at = centre + Rot2::from_angle(turn) * vec2(0.0, pen.mm(60.0));
+        lettering::write(
+            painter,
+            at,
+            Align2::CENTER_CENTER,
+            &seconds,
+            pen.mm(70.0),
+            LAMP,
+            turn,
+        );
+    }
+}
+
 /// Draws the warning over all of `screen` (points): `left_ms` of `whole_ms` until the reset.
 pub fn draw(painter: &Painter, sight: &Sight<'_>, screen: Rect, left_ms: u64, whole_ms: u64) {
     let pen = Pen::new(painter, sight);

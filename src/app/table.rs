@@ -1,0 +1,707 @@
+//! The table without its window: who owns which contact, which phase it is, what the session is told.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::DVec2;
+use serde::Serialize;
+
+use super::focus::Focus;
+use super::graphics::Graphics;
+use super::metrics::Facts;
+use super::save::Saver;
+use super::{AppError, Options};
+use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase, Side};
+use crate::gesture::params::GestureParams;
+use crate::input::window::{TouchPhase, WindowInput, WindowMap};
+use crate::instrument::{ControlKind, Deed, Instrument, InstrumentParams, Key, Route, Scene};
+use crate::kiosk::{
+    DoorParams, DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor,
+};
+use crate::live::{Frame, Heartbeat, LiveParams, Session, Start};
+use crate::render::{Camera, LandStyle, plan_rect};
+use crate::settings::Settings;
+use crate::sim::SimParams;
+use crate::units::PlanMap;
+
+/// Columns of the rasters that the session draws for the window.
+const COLUMNS: usize = 1024;
+/// The same where processor cores also draw the picture.
+const SOFTWARE_COLUMNS: usize = 640;
+/// Nodes of the land where the settings leave it to the program: on many cores, on few, and on few that also draw.
+const NODES: [usize; 3] = [60_000, 30_000, 15_000];
+/// From so many cores on there are many.
+const MANY_CORES: usize = 8;
+/// Time in which the room's light follows a reset, s.
+const EASE_S: f64 = 0.25;
+/// How many times as high mountains are drawn in full flight: from aslant they look lower than they feel.
+const EXAGGERATION: f64 = 1.7;
+/// Where a fingertip is held in the staff's corner, mm from both edges.
+const FINGERTIP_MM: f64 = 12.0;
+/// How long touches do nothing while the table is wiped, µs.
+const CLEANING_US: u64 = 30_000_000;
+
+/// What the window tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Raw {
+    /// A touch of a device.
+    Touch {
+        /// Which device.
+        device: u16,
+        /// The window system's name for it.
+        id: u64,
+        /// What it does.
+        phase: TouchPhase,
+        /// Where, window pixels.
+        at_px: DVec2,
+    },
+    /// The pointer moves.
+    PointerMoved {
+        /// Where to, window pixels.
+        at_px: DVec2,
+    },
+    /// The mouse's first button.
+    PointerButton {
+        /// Down or up.
+        pressed: bool,
+        /// With the Shift key.
+        shift: bool,
+    },
+}
+
+/// One contact event and where it went, for halos and panels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub(super) event: ContactEvent,
+    pub(super) route: Route,
+}
+
+/// What the instrument must see, borrowed for one call.
+macro_rules! with_scene {
+    ($table:ident, $scene:ident => $call:expr) => {{
+        let frame = $table.session.current();
+        let $scene = Scene {
+            plates: &frame.surface.plates,
+            faults: &frame.surface.faults,
+            map: $table.map,
+            clock: &frame.clock,
+            in_flight: $table.flight.in_flight(),
+            panels: &$table.panels,
+        };
+        $call
+    }};
+}
+
+/// The table.
+pub(super) struct Table {
+    unattended: bool,
+    map: PlanMap,
+    size_px: DVec2,
+    input: WindowInput,
+    instrument: Instrument,
+    kiosk: Kiosk,
+    show: Show,
+    door: StaffDoor,
+    flight: Flight,
+    /// The flight on the ground, to begin anew with.
+    grounded: Flight,
+    wishes_fly: bool,
+    session: Session,
+    saver: Saver,
+    /// Rectangles of panels, table mm.
+    panels: Vec<(DVec2, DVec2)>,
+    seen: Vec<Seen>,
+    focus: Focus,
+    camera: Camera,
+    style: LandStyle,
+    visitors: u64,
+    resets: u64,
+    in_reset: bool,
+    control_presses: u64,
+    nodes: usize,
+    now_us: u64,
+    cleaning_until_us: u64,
+    /// When each contact that is down landed.
+    since_us: BTreeMap<ContactKey, u64>,
+    /// Pushes of the session when the phase began.
+    pushes: u64,
+    layout_told: Option<(DVec2, bool)>,
+}
+
+impl Table {
+    pub(super) fn new(
+        options: &Options,
+        settings: &Settings,
+        size_px: [u32; 2],
+        software: bool,
+    ) -> Result<Self, AppError> {
+        let size_px = DVec2::from(size_px.map(f64::from));
+        let size_mm = settings.table_size_mm(size_px);
+        let map = settings.plan_map(size_mm);
+        let unattended = options.kiosk;
+        let nodes = nodes(settings, software);
+        let session = Session::spawn(LiveParams {
+            map,
+            nodes,
+            seed: 1,
+            sim: SimParams::default(),
+            raster_width: if software { SOFTWARE_COLUMNS } else { COLUMNS },
+            threads: 0,
+        })
+        .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
+        Ok(Self {
+            unattended,
+            map,
+            size_px,
+            input: WindowInput::new(window_map(settings, &map, size_px)),
+            instrument: Instrument::new(instrument_params(settings, size_mm, unattended)),
+            kiosk: Kiosk::new(KioskParams::new(&settings.kiosk, unattended)),
+            show: Show::new(size_mm),
+            door: StaffDoor::new(door_params(settings, size_mm)),
+            flight: grounded(settings),
+            grounded: grounded(settings),
+            wishes_fly: false,
+            session,
+            saver: Saver::new(options.save.clone()),
+            panels: Vec::new(),
+            seen: Vec::new(),
+            focus: Focus::default(),
+            camera: Camera::plan(map.extent(), size_px),
+            style: LandStyle::default(),
+            visitors: 1,
+            resets: 0,
+            in_reset: false,
+            control_presses: 0,
+            nodes,
+            now_us: 0,
+            cleaning_until_us: 0,
+            since_us: BTreeMap::new(),
+            pushes: 0,
+            layout_told: None,
+        })
+    }
+
+    /// The newest frame of the session.
+    pub(super) fn frame(&self) -> &Frame {
+        self.session.current()
+    }
+
+    /// Counts the beats of the session's thread.
+    pub(super) fn session_beats(&self) -> Heartbeat {
+        self.session.heartbeat()
+    }
+
+    /// The eye of the next picture.
+    pub(super) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// How the land is shown in the next picture.
+    pub(super) fn style(&self) -> &LandStyle {
+        &self.style
+    }
+
+    /// Table ↔ plan.
+    pub(super) fn map(&self) -> PlanMap {
+        self.map
+    }
+
+    /// Everything of the instrument, for drawing.
+    pub(super) fn instrument(&self) -> &Instrument {
+        &self.instrument
+    }
+
+    /// The circle, for drawing.
+    pub(super) fn kiosk(&self) -> &Kiosk {
+        &self.kiosk
+    }
+
+    /// The staff's door, to be drawn and to be typed at.
+    pub(super) fn door(&mut self) -> &mut StaffDoor {
+        &mut self.door
+    }
+
+    /// How far the view is from the plan, 0–1.
+    pub(super) fn aloft(&self) -> f64 {
+        self.flight.amount()
+    }
+
+    /// Word of what was saved, or why not, while it is news.
+    pub(super) fn notice(&self) -> Option<&str> {
+        self.saver.notice()
+    }
+
+    /// What contacts did since this was last asked.
+    pub(super) fn take_seen(&mut self) -> Vec<Seen> {
+        std::mem::take(&mut self.seen)
+    }
+
+    /// Rectangles of panels, table mm: contacts that land there are the panels'.
+    pub(super) fn set_panels(&mut self, panels: Vec<(DVec2, DVec2)>) {
+        self.panels = panels;
+    }
+
+    /// Contacts that are down: where, table mm, and for how long, s.
+    pub(super) fn contact_ages(&self) -> impl Iterator<Item = (DVec2, f64)> {
+        self.input.contacts().map(|contact| {
+            let since_us = self.since_us.get(&contact.key).copied().unwrap_or(self.now_us);
+            (
+                contact.position,
+                self.now_us.saturating_sub(since_us) as f64 / 1e6,
+            )
+        })
+    }
+
+    /// Nodes of the land.
+    pub(super) fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// For how long touches still do nothing, so that the table can be wiped, s.
+    pub(super) fn cleaning_s(&self) -> Option<f64> {
+        let left_us = self.cleaning_until_us.saturating_sub(self.now_us);
+        (left_us > 0).then_some(left_us as f64 / 1e6)
+    }
+
+    /// Touches do nothing for half a minute.
+    pub(super) fn clean(&mut self, now_us: u64) {
+        self.cancel_all(now_us);
+        self.cleaning_until_us = now_us + CLEANING_US;
+    }
+
+    /// Number of contacts that are down.
+    pub(super) fn contacts(&self) -> usize {
+        self.input.contacts().count()
+    }
+
+    /// True while somebody is there or the land moves under hands: then every frame counts.
+    pub(super) fn lively(&self) -> bool {
+        self.kiosk.phase() != Phase::Attract || self.contacts() > 0
+    }
+
+    /// What the window tells.
+    pub(super) fn raw(&mut self, raw: Raw, now_us: u64) {
+        let mut events = Vec::new();
+        match raw {
+            Raw::Touch {
+                device,
+                id,
+                phase,
+                at_px,
+            } => self.input.touch((device, id), phase, at_px, now_us, &mut events),
+            Raw::PointerMoved { at_px } => self.input.pointer_moved(at_px, &mut events),
+            Raw::PointerButton { pressed, shift } => self.input.button(pressed, shift, now_us, &mut events),
+        }
+        self.take(events, now_us);
+    }
+
+    /// Lifts the hands that the mouse has planted. False when there are none.
+    pub(super) fn lift_planted(&mut self, now_us: u64) -> bool {
+        let mut events = Vec::new();
+        self.input.lift_all(&mut events);
+        let lifted = !events.is_empty();
+        self.take(events, now_us);
+        lifted
+    }
+
+    /// Withdraws all contacts: the window has lost its focus or its place.
+    pub(super) fn cancel_all(&mut self, now_us: u64) {
+        let mut events = Vec::new();
+        self.input.cancel_all(&mut events);
+        self.take(events, now_us);
+        self.instrument.cancel_all();
+    }
+
+    /// The window has another size. The land keeps its own, and is shown as large as it fits.
+    pub(super) fn resize(&mut self, settings: &Settings, size_px: [u32; 2], now_us: u64) {
+        self.size_px = DVec2::from(size_px.map(f64::from));
+        let mut events = Vec::new();
+        let map = window_map(settings, &self.map, self.size_px);
+        self.input.set_map(map, &mut events);
+        self.take(events, now_us);
+        self.layout_told = None;
+    }
+
+    /// Settings have changed: everything but the land's size follows at once.
+    pub(super) fn apply(&mut self, settings: &Settings, now_us: u64) {
+        let size_mm = self.map.size_mm();
+        self.instrument
+            .set_params(instrument_params(settings, size_mm, self.unattended));
+        self.kiosk
+            .set_params(KioskParams::new(&settings.kiosk, self.unattended));
+        self.door.set_params(door_params(settings, size_mm));
+        self.grounded = grounded(settings);
+        self.flight = self.grounded.clone();
+        let size_px = [self.size_px.x as u32, self.size_px.y as u32];
+        self.resize(settings, size_px, now_us);
+    }
+
+    /// A key that stands in for a control.
+    pub(super) fn key(&mut self, key: Key, down: bool, now_us: u64) {
+        self.kiosk.stir(millis(now_us));
+        self.carry_out(now_us);
+        with_scene!(self, scene => self.instrument.key(key, down, now_us, &scene));
+        self.carry_out_deeds(now_us);
+    }
+
+    /// Staff want the table fresh.
+    pub(super) fn start_afresh(&mut self, now_us: u64) {
+        self.kiosk.reset(millis(now_us));
+        self.carry_out(now_us);
+    }
+
+    /// The land is to be saved.
+    pub(super) fn save(&mut self) {
+        self.saver.ask(&self.session);
+    }
+
+    /// The last minute of contacts is to be saved.
+    pub(super) fn save_contacts(&mut self) {
+        self.saver.ask_contacts(&self.session);
+    }
+
+    /// Writes the settings, if there is a file for them.
+    pub(super) fn save_settings(&mut self, settings: &Settings, path: Option<&Path>) {
+        self.saver.settings(settings, path);
+    }
+
+    fn take(&mut self, events: Vec<ContactEvent>, now_us: u64) {
+        for event in events {
+            self.contact(&event, now_us);
+        }
+    }
+
+    /// One event of one contact, to its owner.
+    fn contact(&mut self, event: &ContactEvent, now_us: u64) {
+        self.now_us = now_us;
+        let now_ms = millis(now_us);
+        match event.phase {
+            ContactPhase::Down => drop(self.since_us.insert(event.contact.key, now_us)),
+            ContactPhase::Up | ContactPhase::Cancel => drop(self.since_us.remove(&event.contact.key)),
+            ContactPhase::Move => {}
+        }
+        if self.cleaning_s().is_some() {
+            self.seen.push(Seen {
+                event: *event,
+                route: Route::Ignored,
+            });
+            return;
+        }
+        self.kiosk.feed(event, now_ms);
+        self.carry_out(now_us);
+        self.turn_view(now_us);
+        let route = with_scene!(self, scene => self.instrument.feed(event, now_us, &scene));
+        self.door.feed(event, now_ms);
+        match route {
+            Route::Land => self.session.send(vec![*event], Vec::new(), now_us),
+            Route::Control if event.phase == ContactPhase::Down => self.control_presses += 1,
+            Route::Panel => self.door.stir(now_ms),
+            _ => {}
+        }
+        self.seen.push(Seen { event: *event, route });
+        self.carry_out_deeds(now_us);
+    }
+
+    /// Time goes on: the circle, the show, the view, the session. Once a frame, before it is drawn.
+    pub(super) fn step(&mut self, settings: &Settings, now_us: u64, dt_s: f64) {
+        self.now_us = now_us;
+        let now_ms = millis(now_us);
+        self.kiosk.tick(now_ms);
+        self.door.tick(now_ms);
+        self.carry_out(now_us);
+        let show = self.show.advance(now_us);
+        if let Some(seed) = show.fresh {
+            self.session.restart(Start::Seed(seed));
+        }
+        for frame in &show.frames {
+            self.session
+                .send(frame.events.clone(), frame.commands.clone(), now_us);
+            self.seen.extend(frame.events.iter().map(|&event| Seen {
+                event,
+                route: Route::Land,
+            }));
+        }
+        with_scene!(self, scene => self.instrument.tick(now_us, &scene));
+        self.carry_out_deeds(now_us);
+        self.session.advance(now_us);
+        self.session.frame();
+        let pushes = self.frame().contacts.pushes;
+        if pushes > self.pushes && !self.show.playing() {
+            self.kiosk.pushed(now_ms);
+            self.carry_out(now_us);
+        }
+        self.pushes = pushes;
+        self.wishes_fly = show.fly;
+        self.turn_view(now_us);
+        self.look(settings, dt_s);
+        self.saver.step(now_us);
+    }
+
+    /// Where the view goes.
+    fn turn_view(&mut self, now_us: u64) {
+        let wish = if !matches!(self.door.phase(), DoorPhase::Shut | DoorPhase::Holding { .. }) {
+            FlightWish::Plan
+        } else if self.show.playing() {
+            if self.wishes_fly {
+                FlightWish::Fly
+            } else {
+                FlightWish::Plan
+            }
+        } else if self.frame().clock.paused
+            || matches!(self.kiosk.phase(), Phase::IdleWarning { .. } | Phase::Reset)
+        {
+            FlightWish::Plan
+        } else {
+            FlightWish::WhenUntouched
+        };
+        self.flight.tick(millis(now_us), wish, self.kiosk.untouched_ms());
+    }
+
+    /// Camera, exaggeration and light of the next picture.
+    fn look(&mut self, settings: &Settings, dt_s: f64) {
+        let aloft = self.flight.amount();
+        let surface = &self.session.current().surface;
+        self.focus.follow(surface, aloft, dt_s);
+        let extent = self.map.extent();
+        let exaggeration = 1.0 + (EXAGGERATION - 1.0) * aloft;
+        let eye = self.focus.eye(self.flight.aloft_s(), exaggeration);
+        self.camera = Camera::between(extent, self.size_px, &eye, aloft);
+        let lamp_goal = match self.kiosk.phase() {
+            Phase::Reset => 0.0,
+            _ => 1.0,
+        };
+        let eased = if settings.view.reduced_motion {
+            1.0
+        } else {
+            1.0 - (-dt_s / EASE_S).exp()
+        };
+        self.style = LandStyle {
+            exaggeration: exaggeration as f32,
+            lamp: self.style.lamp + (lamp_goal - self.style.lamp) * eased as f32,
+            ..LandStyle::default()
+        };
+    }
+
+    /// Does what the circle asks for.
+    fn carry_out(&mut self, now_us: u64) {
+        for effect in self.kiosk.drain() {
+            match effect {
+                Effect::StartShow => self.show.start(),
+                Effect::CancelShow => {
+                    if let Some(frame) = self.show.stop(now_us) {
+                        self.session.send(frame.events.clone(), Vec::new(), now_us);
+                        self.seen.extend(frame.events.iter().map(|&event| Seen {
+                            event,
+                            route: Route::Land,
+                        }));
+                    }
+                }
+                Effect::CancelContacts => {
+                    let mut events = Vec::new();
+                    self.input.cancel_all(&mut events);
+                    for event in &events {
+                        self.session.send(vec![*event], Vec::new(), now_us);
+                        self.seen.push(Seen {
+                            event: *event,
+                            route: Route::Ignored,
+                        });
+                    }
+                    self.instrument.cancel_all();
+                }
+                Effect::FreshLand => {
+                    self.visitors += 1;
+                    self.session.restart(Start::Seed(self.visitors));
+                    self.pushes = 0;
+                }
+                Effect::ResetTools => self.instrument.reset(),
+                Effect::ResetView => self.flight = self.grounded.clone(),
+            }
+        }
+        if self.kiosk.phase() == Phase::Reset && !self.in_reset {
+            self.resets += 1;
+        }
+        self.in_reset = self.kiosk.phase() == Phase::Reset;
+    }
+
+    fn carry_out_deeds(&mut self, now_us: u64) {
+        for deed in self.instrument.drain() {
+            match deed {
+                Deed::Command(command) => self.session.send(Vec::new(), vec![command], now_us),
+                Deed::Save { .. } => self.save(),
+                // The instrument remembers what it shows.
+                Deed::Readouts { .. } => {}
+            }
+        }
+    }
+
+    /// Figures of this second.
+    pub(super) fn facts(&self, graphics: &Graphics, scale: f32, devices_lost: u32) -> Facts {
+        let frame = self.frame();
+        let heights = &frame.surface.height.data;
+        let [width, height] = graphics.size_px();
+        let info = &graphics.gpu().info;
+        let window = self.input.counts();
+        Facts {
+            phase: phase_name(self.kiosk.phase()),
+            steps: frame.steps,
+            contacts: self.contacts(),
+            contacts_total: frame.contacts.total,
+            hands: frame.hands.len(),
+            pushes: frame.contacts.pushes,
+            taps: frame.contacts.taps,
+            ghosts_dropped: frame.contacts.dropped_ghosts,
+            ignored: frame.contacts.ignored + window.unknown,
+            dead_touches: frame.counts.dead_touches,
+            control_presses: self.control_presses,
+            resets: self.resets,
+            panics: frame.panics,
+            devices_lost: u64::from(devices_lost),
+            nodes: self.nodes,
+            scale,
+            elapsed_yr: frame.clock.elapsed_yr,
+            max_m: heights.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+            min_m: heights.iter().copied().fold(f32::INFINITY, f32::min),
+            adapter: info.name.clone(),
+            backend: info.backend.to_string(),
+            width,
+            height,
+        }
+    }
+
+    /// Where controls are in the window, when that has changed since this was last asked: for whoever drives the
+    /// table from outside.
+    pub(super) fn layout_line(&mut self) -> Option<LayoutLine> {
+        let paused = self.frame().clock.paused;
+        if self.layout_told == Some((self.size_px, paused)) {
+            return None;
+        }
+        self.layout_told = Some((self.size_px, paused));
+        let (corner, size) = plan_rect(self.map.extent(), self.size_px);
+        let per_mm = size.x / self.map.size_mm().x;
+        let controls = self.instrument.controls();
+        let size_mm = self.map.size_mm();
+        let staff_corner = self.instrument.params().corner.position(size_mm);
+        // A fingertip inside the corner itself.
+        let staff = staff_corner + (size_mm / 2.0 - staff_corner).signum() * FINGERTIP_MM;
+        Some(LayoutLine {
+            controls: controls
+                .iter()
+                .map(|control| {
+                    let at = corner + control.centre_mm * per_mm;
+                    ControlPlace {
+                        id: format!("{}-{:?}", side_name(control.side), control.kind).to_lowercase(),
+                        side: side_name(control.side),
+                        kind: kind_name(control.kind),
+                        x_px: at.x,
+                        y_px: at.y,
+                        half_px: control.half_size_mm.y * per_mm,
+                    }
+                })
+                .collect(),
+            staff_corner: Place {
+                label: None,
+                x_px: (corner + staff * per_mm).x,
+                y_px: (corner + staff * per_mm).y,
+            },
+        })
+    }
+}
+
+/// Where controls are, as a line of metrics.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LayoutLine {
+    controls: Vec<ControlPlace>,
+    staff_corner: Place,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ControlPlace {
+    id: String,
+    side: &'static str,
+    kind: &'static str,
+    x_px: f64,
+    y_px: f64,
+    half_px: f64,
+}
+
+/// A place in the window, pixels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Place {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) label: Option<String>,
+    pub(super) x_px: f64,
+    pub(super) y_px: f64,
+}
+
+fn phase_name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Attract => "attract",
+        Phase::Invite => "invite",
+        Phase::Play => "play",
+        Phase::IdleWarning { .. } => "idle_warning",
+        Phase::Reset => "reset",
+    }
+}
+
+fn side_name(side: Side) -> &'static str {
+    match side {
+        Side::North => "north",
+        Side::South => "south",
+    }
+}
+
+fn kind_name(kind: ControlKind) -> &'static str {
+    match kind {
+        ControlKind::Tool => "tool",
+        ControlKind::Undo => "undo",
+        ControlKind::PlayPause => "play_pause",
+        ControlKind::Speed => "speed",
+        ControlKind::Scrub => "scrub",
+        ControlKind::StartOver => "start_over",
+        ControlKind::Readouts => "readouts",
+        ControlKind::Save => "save",
+    }
+}
+
+/// Table time in the milliseconds of the circle.
+fn millis(now_us: u64) -> u64 {
+    now_us / 1000
+}
+
+fn nodes(settings: &Settings, software: bool) -> usize {
+    let many = std::thread::available_parallelism().is_ok_and(|cores| cores.get() >= MANY_CORES);
+    let chosen = match (many, software) {
+        (true, _) => NODES[0],
+        (false, false) => NODES[1],
+        (false, true) => NODES[2],
+    };
+    settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
+}
+
+fn window_map(settings: &Settings, map: &PlanMap, size_px: DVec2) -> WindowMap {
+    let land_px = plan_rect(map.extent(), size_px);
+    WindowMap::new(size_px, land_px, map.size_mm(), settings.table.orientation)
+}
+
+fn instrument_params(settings: &Settings, size_mm: DVec2, unattended: bool) -> InstrumentParams {
+    InstrumentParams {
+        size_mm,
+        corner: settings.staff.corner,
+        unattended,
+        readouts: settings.view.readouts,
+        gesture: GestureParams::default(),
+    }
+}
+
+fn door_params(settings: &Settings, size_mm: DVec2) -> DoorParams {
+    DoorParams {
+        pin: settings.staff.pin.clone(),
+        corner: settings.staff.corner,
+        size_mm,
+    }
+}
+
+fn grounded(settings: &Settings) -> Flight {
+    let after_ms = (settings.kiosk.flight_after_s * 1e3) as u64;
+    Flight::new(after_ms, settings.view.reduced_motion)
+}

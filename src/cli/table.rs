@@ -1,0 +1,115 @@
+//! Plain `orogen` and `orogen kiosk`: the table in a window.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use clap::ValueEnum;
+
+use super::console::Console;
+use super::failure::Failure;
+use super::output::Timings;
+use super::{PictureChoice, TableArgs, replay};
+use crate::app::{self, AppError, Options, SavedLand};
+use crate::export::OutDir;
+use crate::gesture::command::Mode;
+use crate::sim::Sim;
+
+/// Least side of the window, pixels: what the controls of both sides need.
+const MIN_SIDE: u32 = 320;
+/// Greatest side, pixels: what graphics cards promise.
+const MAX_SIDE: u32 = 8192;
+
+/// A world, as the command line names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ModeChoice {
+    /// Mountains on a flat land.
+    Mountain,
+}
+
+/// Opens the table; where that is not possible, plays the built-in session instead.
+pub(super) fn open(args: &TableArgs, console: Console) -> Result<(), Failure> {
+    match app::run(&options(args, false)) {
+        Err(AppError::NoDisplay(why) | AppError::NoGraphics(why)) => {
+            console.note(&format!("no table to touch here: {why}"));
+            replay::builtin(console)
+        }
+        ended => ended.map_err(failure),
+    }
+}
+
+/// Opens the table for unattended machines.
+pub(super) fn kiosk(args: &TableArgs) -> Result<(), Failure> {
+    app::run(&options(args, true)).map_err(failure)
+}
+
+fn options(args: &TableArgs, kiosk: bool) -> Options {
+    Options {
+        kiosk,
+        windowed: args.windowed || args.size.is_some(),
+        size: args.size,
+        monitor: args.monitor.map(usize::from),
+        mode: args.mode.map(|ModeChoice::Mountain| Mode::Mountain),
+        settings: args.settings.clone(),
+        metrics: args.metrics.clone(),
+        save: Arc::new(|land, path| save_land(land, path).map_err(|failure| failure.to_string())),
+    }
+}
+
+/// Pixels along the width of what the table saves.
+const SAVED_SIZE: u32 = 1920;
+/// Title of what the table saves.
+const SAVED_TITLE: &str = "Orogen";
+
+/// What `replay` writes, from a table that runs on meanwhile.
+fn save_land(land: &SavedLand, path: &Path) -> Result<(), Failure> {
+    let timings = Timings::start();
+    let out = OutDir::create(path).map_err(Failure::input)?;
+    let sim = Sim::resume(land.clone());
+    replay::write_session(&sim, SAVED_TITLE, &out, (SAVED_SIZE, PictureChoice::Map), timings)
+}
+
+fn failure(error: AppError) -> Failure {
+    match error {
+        AppError::NoDisplay(why) | AppError::NoGraphics(why) => Failure::NoDisplay(format!(
+            "{why}; start it where a display is, or use `orogen replay`, which needs none"
+        )),
+        AppError::Settings(_) | AppError::File(..) => Failure::input(error),
+        AppError::Other(_) => Failure::other(error),
+    }
+}
+
+/// `WxH` in pixels.
+pub(super) fn window_size(text: &str) -> Result<[u32; 2], String> {
+    let expected = || format!("expected WIDTHxHEIGHT, each {MIN_SIDE} to {MAX_SIDE}");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
+    let side = |text: &str| {
+        let side: u32 = text.parse().ok()?;
+        (MIN_SIDE..=MAX_SIDE).contains(&side).then_some(side)
+    };
+    match (side(width), side(height)) {
+        (Some(width), Some(height)) => Ok([width, height]),
+        _ => Err(expected()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn window_sizes() {
+        assert_eq!(window_size("1280x720"), Ok([1280, 720]));
+        for bad in [
+            "",
+            "x",
+            "1280",
+            "1280x",
+            "12x720",
+            "1280x99999",
+            "-1x720",
+            "1280x720x1",
+        ] {
+            assert!(window_size(bad).is_err(), "{bad}");
+        }
+    }
+}
