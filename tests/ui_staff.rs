@@ -6,7 +6,9 @@ use egui::accesskit::Role;
 use egui::{Context, Rect, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use orogen::kiosk::DoorPhase;
+use glam::DVec2;
+use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Source};
+use orogen::kiosk::{DoorParams, DoorPhase, StaffDoor};
 use orogen::settings::{Domain, KEYS, Settings, Value};
 use orogen::ui::staff::{ContactHealth, Health, StaffAction, StaffPanel, StaffView, scale_for};
 use proptest::prelude::*;
@@ -16,31 +18,66 @@ const TARGET: f32 = 44.0;
 
 const SCREEN: Vec2 = Vec2::new(1280.0, 720.0);
 
-/// A door as far as the panel knows one: it counts digits and compares.
+/// A table whose staff's door is real.
 struct Table {
-    door: DoorPhase,
+    door: StaffDoor,
+    now_ms: u64,
     panel: StaffPanel,
     settings: Settings,
-    typed: String,
     actions: Vec<StaffAction>,
     rect: Option<Rect>,
 }
 
 impl Table {
-    fn new(door: DoorPhase) -> Self {
+    /// A table whose corner has been held for long enough.
+    fn at_the_keypad() -> Self {
+        let settings = Settings::default();
+        let size_mm = DVec2::new(1209.6, 680.4);
+        let mut door = StaffDoor::new(DoorParams {
+            pin: settings.staff.pin.clone(),
+            corner: settings.staff.corner,
+            size_mm,
+        });
+        let contact = Contact {
+            key: ContactKey {
+                source: Source::Window,
+                device: 0,
+                id: 1,
+                generation: 0,
+            },
+            position: settings.staff.corner.position(size_mm).lerp(size_mm / 2.0, 0.02),
+            size_mm: None,
+            confidence: None,
+        };
+        let phase = Phase::Down;
+        door.feed(&ContactEvent { phase, contact }, 0);
+        let mut now_ms = 0;
+        while matches!(door.phase(), DoorPhase::Holding { .. }) {
+            now_ms += 16;
+            door.tick(now_ms);
+        }
         Self {
             door,
+            now_ms,
             panel: StaffPanel::default(),
-            settings: Settings::default(),
-            typed: String::new(),
+            settings,
             actions: Vec::new(),
             rect: None,
         }
     }
 
+    fn at_the_menu() -> Self {
+        let mut table = Self::at_the_keypad();
+        for digit in table.settings.staff.pin.bytes() {
+            table.door.digit(digit - b'0', table.now_ms);
+        }
+        table.door.enter(table.now_ms);
+        table
+    }
+
     fn run(&mut self, context: &Context) {
         let view = StaffView {
-            door: self.door,
+            door: self.door.phase(),
             settings: &self.settings,
             health: &Health::default(),
             notice: None,
@@ -49,38 +86,20 @@ impl Table {
         let shown = self.panel.show(context, &view);
         self.rect = shown.rect;
         for action in shown.actions {
-            match &action {
-                StaffAction::Digit(digit) => self.typed.push(char::from(b'0' + digit)),
-                StaffAction::Erase => {
-                    self.typed.pop();
-                }
-                _ => {}
+            match action {
+                StaffAction::Digit(digit) => self.door.digit(digit, self.now_ms),
+                StaffAction::Erase => self.door.erase(self.now_ms),
+                StaffAction::Enter => self.door.enter(self.now_ms),
+                action => self.actions.push(action),
             }
-            self.actions.push(action);
-        }
-        if let DoorPhase::Keypad { wrong, .. } = self.door {
-            self.door = if self.typed.len() < self.settings.staff.pin.len() {
-                DoorPhase::Keypad {
-                    digits: self.typed.len(),
-                    wrong,
-                }
-            } else if std::mem::take(&mut self.typed) == self.settings.staff.pin {
-                DoorPhase::Menu
-            } else {
-                DoorPhase::Keypad {
-                    digits: 0,
-                    wrong: wrong + 1,
-                }
-            };
         }
     }
 }
 
-fn harness(door: DoorPhase) -> Harness<'static, Table> {
-    let mut harness = Harness::builder().with_size(SCREEN).build_ui_state(
-        |ui, table: &mut Table| table.run(&ui.ctx().clone()),
-        Table::new(door),
-    );
+fn harness(table: Table) -> Harness<'static, Table> {
+    let mut harness = Harness::builder()
+        .with_size(SCREEN)
+        .build_ui_state(|ui, table: &mut Table| table.run(&ui.ctx().clone()), table);
     harness.run_steps(3);
     harness
 }
@@ -94,36 +113,40 @@ fn actions(harness: &mut Harness<'_, Table>) -> Vec<StaffAction> {
     std::mem::take(&mut harness.state_mut().actions)
 }
 
-const KEYPAD: DoorPhase = DoorPhase::Keypad { digits: 0, wrong: 0 };
-
 #[test]
 fn the_right_pin_opens_and_a_wrong_one_says_so() {
-    let mut harness = harness(KEYPAD);
-    for digit in ["1", "2", "3", "4"] {
-        press(&mut harness, digit);
+    let mut harness = harness(Table::at_the_keypad());
+    for key in ["1", "2", "3", "4", "Enter"] {
+        press(&mut harness, key);
     }
     assert!(harness.query_by_label("Wrong PIN").is_some());
     assert!(harness.query_by_label("Save the land").is_none());
-    for key in ["9", "Erase", "2", "5", "8", "0"] {
+    for key in ["9", "Erase", "2", "5", "8", "0", "Enter"] {
         press(&mut harness, key);
     }
-    assert_eq!(harness.state().door, DoorPhase::Menu);
+    assert_eq!(harness.state().door.phase(), DoorPhase::Menu);
     assert!(harness.query_by_label("Save the land").is_some());
 }
 
 #[test]
-fn a_locked_door_takes_no_digits_and_can_be_left() {
-    let mut harness = harness(DoorPhase::Locked { left_ms: 29_001 });
-    assert!(harness.query_by_label("Locked for 30 s").is_some());
-    press(&mut harness, "7");
-    assert!(actions(&mut harness).is_empty());
+fn a_locked_door_says_so_takes_no_digits_and_can_be_left() {
+    let mut harness = harness(Table::at_the_keypad());
+    for _ in 0..20 {
+        for key in ["1", "Enter"] {
+            press(&mut harness, key);
+        }
+    }
+    assert!(matches!(harness.state().door.phase(), DoorPhase::Locked { .. }));
+    let digit = harness.get_by_label("7");
+    assert!(digit.accesskit_node().is_disabled());
+    assert!(harness.query_by_label_contains("Locked for").is_some());
     press(&mut harness, "Close");
     assert_eq!(actions(&mut harness), [StaffAction::Leave]);
 }
 
 #[test]
 fn each_button_of_the_menu_does_what_it_says_and_grave_ones_ask_first() {
-    let mut harness = harness(DoorPhase::Menu);
+    let mut harness = harness(Table::at_the_menu());
     for (label, action) in [
         ("Save the land", StaffAction::SaveLand),
         ("Save the last 60 s of touches", StaffAction::SaveContacts),
@@ -156,7 +179,7 @@ fn each_button_of_the_menu_does_what_it_says_and_grave_ones_ask_first() {
 
 #[test]
 fn steps_and_switches_change_the_draft_and_save_hands_it_over() {
-    let mut harness = harness(DoorPhase::Menu);
+    let mut harness = harness(Table::at_the_menu());
     press(&mut harness, "Visits");
     press(&mut harness, "More: Idle s");
     press(&mut harness, "Attract");
@@ -181,7 +204,7 @@ fn settings_stay_in_bounds_however_often_their_buttons_are_pressed() {
             continue;
         };
         for (button, end) in [("More: ", bound.max), ("Less: ", bound.min)] {
-            let mut harness = harness(DoorPhase::Menu);
+            let mut harness = harness(Table::at_the_menu());
             assert!(key.put(&mut harness.state_mut().settings, &Value::Number(end)));
             harness.run_steps(2);
             open_section(&mut harness, key.section);
@@ -199,19 +222,19 @@ fn settings_stay_in_bounds_however_often_their_buttons_are_pressed() {
 
 #[test]
 fn a_new_pin_is_typed_on_the_table() {
-    let mut harness = harness(DoorPhase::Menu);
+    let mut harness = harness(Table::at_the_menu());
     press(&mut harness, "Staff");
     press(&mut harness, "Change the PIN");
     for key in ["4", "7", "1"] {
         press(&mut harness, key);
     }
-    press(&mut harness, "Take this PIN");
+    press(&mut harness, "Enter");
     assert!(
         harness.query_by_label("New PIN: 471").is_some(),
         "three digits are too few"
     );
     press(&mut harness, "1");
-    press(&mut harness, "Take this PIN");
+    press(&mut harness, "Enter");
     press(&mut harness, "Save settings");
     let mut expected = Settings::default();
     expected.staff.pin = "4711".to_owned();
@@ -222,12 +245,12 @@ fn a_new_pin_is_typed_on_the_table() {
 fn targets_are_large_and_on_the_screen_on_every_page() {
     let mut pages = vec!["Now", "Health"];
     pages.extend(["World", "Table", "Visits", "Staff", "Quality", "View", "Files"]);
-    let mut harness = harness(DoorPhase::Menu);
+    let mut harness = harness(Table::at_the_menu());
     for page in pages {
         press(&mut harness, page);
         check_targets(&harness, page);
     }
-    check_targets(&self::harness(KEYPAD), "keypad");
+    check_targets(&self::harness(Table::at_the_keypad()), "keypad");
 }
 
 fn check_targets(harness: &Harness<'_, Table>, page: &str) {

@@ -3,48 +3,57 @@
 use std::error::Error;
 use std::iter::once;
 
-use egui::{ClippedPrimitive, Color32, ColorImage, Context, RawInput, Rect, TextureOptions, Vec2};
+use egui::{
+    ClippedPrimitive, Color32, ColorImage, Context, Event, Modifiers, PointerButton, Pos2, RawInput, Rect,
+    TextureOptions, Vec2,
+};
 use egui_wgpu::wgpu;
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use image::RgbaImage;
+use orogen::gpu::{Gpu, GpuError};
 
-/// A graphics card (or the software one) that draws egui's frames into pictures.
+/// Draws egui's frames into pictures.
 pub(crate) struct Offscreen {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    /// The graphics card, or the software one.
+    pub(crate) gpu: Gpu,
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 impl Offscreen {
-    pub(crate) fn new() -> Result<Self, Box<dyn Error>> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
-        Ok(Self { device, queue })
+    pub(crate) fn new() -> Result<Self, GpuError> {
+        Gpu::offscreen().map(|gpu| Self { gpu })
     }
 
-    /// Draws `scene` over `background`. The frame is run three times, so that what egui lays out in one pass and
-    /// fades in over some time is there.
+    /// Draws `scene` over `background`. The frame is run some times, so that what egui lays out in one pass is there in
+    /// the next; between two of them a finger taps where `press` says.
     pub(crate) fn draw(
         &self,
         background: &RgbaImage,
-        setup: impl FnOnce(&Context),
         mut scene: impl FnMut(&Context, Rect),
+        press: impl Fn(&Context) -> Option<Pos2>,
     ) -> Result<RgbaImage, Box<dyn Error>> {
         let (width, height) = background.dimensions();
         let context = Context::default();
-        setup(&context);
-        let screen = Rect::from_min_size(egui::Pos2::ZERO, Vec2::new(width as f32, height as f32));
+        let screen = Rect::from_min_size(Pos2::ZERO, Vec2::new(width as f32, height as f32));
         let pixels =
             ColorImage::from_rgba_unmultiplied([width as usize, height as usize], background.as_raw());
         let land = context.load_texture("land", pixels, TextureOptions::NEAREST);
-        let mut renderer = Renderer::new(&self.device, FORMAT, RendererOptions::default());
+        let mut renderer = Renderer::new(&self.gpu.device, FORMAT, RendererOptions::default());
         let mut primitives = Vec::new();
-        for pass in 0..3 {
+        for pass in 0..6 {
+            let tap = press(&context)
+                .filter(|_| (2..4).contains(&pass))
+                .map(|pos| Event::PointerButton {
+                    pos,
+                    button: PointerButton::Primary,
+                    pressed: pass == 2,
+                    modifiers: Modifiers::default(),
+                });
             let input = RawInput {
+                events: tap.into_iter().collect(),
                 screen_rect: Some(screen),
-                time: Some(f64::from(pass) * 2.0),
+                time: Some(f64::from(pass) * 0.3),
                 ..RawInput::default()
             };
             let mut output = context.run_pass(input, |context| {
@@ -59,7 +68,7 @@ impl Offscreen {
             });
             for (id, images) in output.textures_delta.set.drain() {
                 for image in images {
-                    renderer.update_texture(&self.device, &self.queue, id, &image);
+                    renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, &image);
                 }
             }
             primitives = context.tessellate(output.shapes, 1.0);
@@ -79,7 +88,7 @@ impl Offscreen {
             height,
             depth_or_array_layers: 1,
         };
-        let target = self.device.create_texture(&wgpu::TextureDescriptor {
+        let target = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size,
             mip_level_count: 1,
@@ -94,10 +103,16 @@ impl Offscreen {
             pixels_per_point: 1.0,
         };
         let mut encoder = self
+            .gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let buffers =
-            renderer.update_buffers(&self.device, &self.queue, &mut encoder, primitives, &descriptor);
+        let buffers = renderer.update_buffers(
+            &self.gpu.device,
+            &self.gpu.queue,
+            &mut encoder,
+            primitives,
+            &descriptor,
+        );
         {
             let view = target.create_view(&wgpu::TextureViewDescriptor::default());
             let mut pass = encoder
@@ -114,7 +129,7 @@ impl Offscreen {
             renderer.render(&mut pass, primitives, &descriptor);
         }
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: u64::from(row * height),
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -132,10 +147,11 @@ impl Offscreen {
             },
             size,
         );
-        self.queue
+        self.gpu
+            .queue
             .submit(buffers.into_iter().chain(once(encoder.finish())));
         buffer.slice(..).map_async(wgpu::MapMode::Read, |_| ());
-        self.device.poll(wgpu::PollType::wait_indefinitely())?;
+        self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
         let bytes = buffer.slice(..).get_mapped_range()?;
         let pixels: Vec<u8> = bytes
             .chunks_exact(row as usize)

@@ -8,6 +8,7 @@ use glam::DVec2;
 use orogen::gesture::file::read_gesture;
 use orogen::gesture::hand::{HandTracker, HandView};
 use orogen::gesture::params::GestureParams;
+use orogen::render::Camera;
 use orogen::sim::{Sim, SimParams, TICK_US, World};
 use orogen::surface::rivers::{FlowGraph, drawn};
 use orogen::surface::{Raster, Surface};
@@ -25,6 +26,8 @@ pub(crate) struct Moment {
     pub(crate) surface: Surface,
     /// The hands that are down.
     pub(crate) hands: Vec<HandView>,
+    /// The eye.
+    pub(crate) camera: Camera,
 }
 
 /// The session of a gesture file of `gestures/` after `seconds`, on a terrain of `nodes`, rasters `width` wide.
@@ -47,6 +50,7 @@ pub(crate) fn play(name: &str, seconds: f64, nodes: usize, width: usize) -> Resu
         map,
         surface: surface(&sim, map, width),
         hands: tracker.hands().collect(),
+        camera: Camera::plan(map.extent(), DVec2::ONE),
     })
 }
 

@@ -31,10 +31,14 @@ pub fn draw(painter: &Painter, sight: &Sight<'_>, controls: &[ControlView], stre
     for view in controls {
         if let Some(centre) = sight.of_table(view.centre_mm) {
             let control = Control::new(pen, view, centre, strength);
+            // Where the slider lies behind the row, labels stand before it.
+            let behind = controls
+                .iter()
+                .any(|other| other.side == view.side && other.kind == ControlKind::Scrub);
             if view.kind == ControlKind::Scrub {
                 control.slider();
             } else {
-                control.disc();
+                control.disc(behind);
             }
         }
     }
@@ -85,7 +89,7 @@ impl<'a> Control<'a> {
         vec2(self.view.half_size_mm.x as f32, self.view.half_size_mm.y as f32) / self.pen.scale
     }
 
-    fn disc(&self) {
+    fn disc(&self, label_before: bool) {
         let (pen, view) = (self.pen, self.view);
         let radius = self.half().min_elem() * if view.pressed { 0.95 } else { 1.0 };
         let enabled = if view.enabled { 1.0 } else { 0.6 };
@@ -118,17 +122,18 @@ impl<'a> Control<'a> {
             let line = Line::solid(AMBER, self.strength, 2.0);
             pen.arc(self.centre, radius + 2.6, self.turn - FRAC_PI_2, sweep, line);
         }
-        self.label(radius);
+        self.label(radius, label_before);
     }
 
-    /// A word above the disc, as its side sees it, while a hand is near.
-    fn label(&self, radius: f32) {
+    /// A word behind the disc, or before it, as its side sees it, while a hand is near.
+    fn label(&self, radius: f32, before: bool) {
         let shown = ((self.glow - LABEL_FROM) / (1.0 - LABEL_FROM)).max(0.0) * self.strength;
         if shown <= 0.0 || !self.view.enabled {
             return;
         }
-        let up = Rot2::from_angle(self.turn) * vec2(0.0, -1.0);
-        let at = self.centre + up * self.pen.mm(radius + 4.0 + LABEL);
+        let towards = if before { 1.0 } else { -1.0 };
+        let away = Rot2::from_angle(self.turn) * vec2(0.0, towards);
+        let at = self.centre + away * self.pen.mm(radius + 2.0 + LABEL);
         let word = words::control(self.view.kind, self.view.on);
         let size = self.pen.mm(LABEL).max(SMALLEST);
         let half = lettering::width(self.pen.painter, word, size) / 2.0;

@@ -54,9 +54,9 @@ impl Glyph<'_> {
 
     /// An arrow along x, from `from` to `to`.
     fn arrow(&self, from: f32, to: f32, y: f32) {
-        let back = (to - from).signum() * 0.34;
+        let back = (to - from).signum() * 0.44;
         self.line(&[(from, y), (to - back * 0.6, y)], 1.0);
-        self.fill(&[(to, y), (to - back, y - 0.2), (to - back, y + 0.2)], 1.0);
+        self.fill(&[(to, y), (to - back, y - 0.26), (to - back, y + 0.26)], 1.0);
     }
 }
 
@@ -152,8 +152,8 @@ pub(super) fn figure(glyph: Glyph<'_>, figure: Figure) {
             glyph.fill(&[(0.0, 0.3), (0.42, 0.9), (-0.42, 0.9)], 0.8);
         }
         Figure::Convergence => {
-            glyph.arrow(-1.0, -0.14, 0.0);
-            glyph.arrow(1.0, 0.14, 0.0);
+            glyph.arrow(-1.15, -0.1, 0.0);
+            glyph.arrow(1.15, 0.1, 0.0);
         }
         // A bed, folded between two walls.
         Figure::Shortening => {

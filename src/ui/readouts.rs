@@ -191,7 +191,7 @@ impl Strip<'_> {
         let glyph = Glyph {
             pen: self.pen,
             centre: self.at(self.used, 0.0),
-            half: self.size(SIZES.1) / self.pen.mm(1.0) * 0.55,
+            half: self.size(SIZES.1) / self.pen.mm(1.0) * 0.62,
             turn: self.turn,
             colour,
             strength: 0.8 * self.shown,

@@ -119,25 +119,20 @@ impl StaffPanel {
         };
         let mut put = None;
         ui.label(RichText::new(format!("New PIN: {typed}")).color(AMBER));
+        let mut done = false;
         keypad::pad(ui, 0.72 * scale, &mut |pressed| match pressed {
             Pressed::Digit(digit) if typed.len() < PIN_DIGITS.1 => typed.push(char::from(b'0' + digit % 10)),
             Pressed::Digit(_) => {}
             Pressed::Erase => {
                 typed.pop();
             }
-        });
-        let value = Value::Text(typed.clone());
-        let mut done = false;
-        ui.horizontal(|ui| {
-            if ui
-                .add_enabled(key.admits(&value), Button::new("Take this PIN"))
-                .clicked()
-            {
-                put = Some(value);
-                done = true;
+            // A PIN that is too short waits for more.
+            Pressed::Enter => {
+                put = Some(Value::Text(typed.clone())).filter(|pin| key.admits(pin));
+                done = put.is_some();
             }
-            done |= ui.button("Keep the old one").clicked();
         });
+        done |= ui.button("Keep the old PIN").clicked();
         self.pin = (!done).then_some(typed);
         put
     }

@@ -49,6 +49,7 @@ pub(super) fn show(ui: &mut Ui, state: State, scale: f32, actions: &mut Vec<Staf
             actions.push(match key {
                 Key::Digit(digit) => StaffAction::Digit(digit),
                 Key::Erase => StaffAction::Erase,
+                Key::Enter => StaffAction::Enter,
             });
         });
     });
@@ -67,33 +68,29 @@ pub(super) enum Key {
     Digit(u8),
     /// Takes the last one back.
     Erase,
+    /// The PIN is complete.
+    Enter,
 }
 
 /// The twelve keys; `press` is told each that is pressed.
 pub(super) fn pad(ui: &mut Ui, scale: f32, press: &mut dyn FnMut(Key)) {
     let size = vec2(KEY, KEY * 0.86) * scale;
-    let rows: [[Option<Key>; 3]; 4] = [
-        [1, 2, 3].map(|digit| Some(Key::Digit(digit))),
-        [4, 5, 6].map(|digit| Some(Key::Digit(digit))),
-        [7, 8, 9].map(|digit| Some(Key::Digit(digit))),
-        [None, Some(Key::Digit(0)), Some(Key::Erase)],
+    let rows = [
+        [1, 2, 3].map(Key::Digit),
+        [4, 5, 6].map(Key::Digit),
+        [7, 8, 9].map(Key::Digit),
+        [Key::Erase, Key::Digit(0), Key::Enter],
     ];
     for row in rows {
         ui.horizontal(|ui| {
             for key in row {
-                match key {
-                    None => {
-                        ui.allocate_space(size);
-                    }
-                    Some(key) => {
-                        let text = match key {
-                            Key::Digit(digit) => RichText::new(digit.to_string()).size(26.0 * scale),
-                            Key::Erase => RichText::new("Erase"),
-                        };
-                        if ui.add_sized(size, Button::new(text)).clicked() {
-                            press(key);
-                        }
-                    }
+                let text = match key {
+                    Key::Digit(digit) => RichText::new(digit.to_string()).size(26.0 * scale),
+                    Key::Erase => RichText::new("Erase"),
+                    Key::Enter => RichText::new("Enter"),
+                };
+                if ui.add_sized(size, Button::new(text)).clicked() {
+                    press(key);
                 }
             }
         });

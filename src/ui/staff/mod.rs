@@ -11,8 +11,13 @@ mod keypad;
 mod menu;
 mod style;
 
-use egui::{Align2, Area, Context, Id, Order, Rect};
+use egui::{Align2, Area, Context, Id, Order, Painter, Rect};
+use glam::DVec2;
 
+use super::ease;
+use super::palette::{LAMP, faded};
+use super::pen::{Line, Pen};
+use super::sight::Sight;
 use crate::kiosk::DoorPhase;
 use crate::settings::Settings;
 
@@ -29,6 +34,8 @@ pub enum StaffAction {
     Digit(u8),
     /// The last digit goes.
     Erase,
+    /// The PIN is complete.
+    Enter,
     /// The panel closes.
     Leave,
     /// The program ends.
@@ -94,6 +101,18 @@ pub struct StaffView<'a> {
     pub notice: Option<&'a str>,
     /// Size of letters and targets, as [`scale_for`] says.
     pub scale: f32,
+}
+
+/// Draws how far the staff's corner (`corner_mm`, table mm) has been held: a ring that a quiet one grows into.
+pub fn draw_hold(painter: &Painter, sight: &Sight<'_>, corner_mm: DVec2, progress: f64) {
+    const RADIUS: f32 = 60.0;
+    let pen = Pen::new(painter, sight);
+    if let Some(corner) = sight.of_table(corner_mm) {
+        let part = ease::smooth(progress);
+        pen.ring(corner, RADIUS, Line::solid(LAMP, 0.35 * part, 0.8));
+        pen.glow(corner, RADIUS * part, 6.0, 2.0, faded(LAMP, 0.25 * part));
+        pen.ring(corner, RADIUS * part, Line::solid(LAMP, 0.8 * part, 1.2));
+    }
 }
 
 impl Default for StaffPanel {
