@@ -26,11 +26,11 @@
 //! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
 //! | [`input`] | recordings of other tools, maps from files | worlds |
 //! | [`report`] | the facts of a run | clock, files |
-//! | [`cli`] | the commands; the only place with a clock, threads and a terminal | |
+//! | [`cli`] | the commands; the only place with a terminal | |
 //!
 //! # What is absent
 //!
-//! * The core (all but [`cli`]) never names a window, a graphics card, the clock or the environment. The same input
+//! * The core (all but `gpu`, `render`, `ui`, `app` and [`cli`]) never names a window, a graphics card, the clock or the environment. The same input
 //!   gives the same bits, for any number of threads; the one seed is in the world.
 //! * [`gesture`], [`mountain`], [`terrain`] and [`sim`] read and write no files.
 //! * Parameters are passed in and never stored in the world, so a snapshot is a clone of plain data.
@@ -42,7 +42,8 @@
 //! # Where to step in
 //!
 //! * A stage on the graphics card implements [`mountain::transport::TransportStage`], whose CPU version is the truth.
-//! * A device hands its contacts to [`sim::Sim::feed`] as [`gesture::contact::InputFrame`]s, as a gesture file does.
+//! * A device hands its contacts to [`sim::Sim::feed`] as [`gesture::contact::InputFrame`]s, as a gesture file does; on
+//!   the live table to [`live::Session::send`].
 //! * Another solver of the land works on [`terrain::Tin`] and [`terrain::Forcing`].
 
 pub mod units;
