@@ -30,8 +30,8 @@
 //!
 //! # What is absent
 //!
-//! * The core (all but `gpu`, `render`, `ui`, `app` and [`cli`]) never names a window, a graphics card, the clock or the environment. The same input
-//!   gives the same bits, for any number of threads; the one seed is in the world.
+//! * The core (all but `gpu`, `render`, `ui`, `app` and [`cli`]) never names a window, a graphics card, the clock or
+//!   the environment. The same input gives the same bits, for any number of threads; the one seed is in the world.
 //! * [`gesture`], [`mountain`], [`terrain`] and [`sim`] read and write no files.
 //! * Parameters are passed in and never stored in the world, so a snapshot is a clone of plain data.
 //! * The table's y axis points down and is in millimetres; the plan's points north and is in metres. Only [`units`]

@@ -156,6 +156,24 @@ const RULES: &[Rule] = &[
         ],
         reason: "settings are read by all and read nobody",
     },
+    Rule {
+        module: "ui",
+        forbidden: &[
+            "winit",
+            "wgpu",
+            "crate::sim",
+            "crate::mountain",
+            "crate::terrain",
+            "crate::render",
+            "crate::gpu",
+            "crate::app",
+            "std::time",
+            "Instant::now",
+            "std::env",
+            "std::fs",
+        ],
+        reason: "what lies on the land is drawn from plain data",
+    },
 ];
 
 /// Modules that must run without window, card, clock and environment: all but the command line.

@@ -45,12 +45,11 @@ pub(super) fn show(ui: &mut Ui, state: State, scale: f32, actions: &mut Vec<Staf
         dots(ui, digits, scale);
     });
     ui.add_enabled_ui(matches!(state, State::Open { .. }), |ui| {
-        pad(ui, scale, &mut |key| {
-            actions.push(match key {
-                Key::Digit(digit) => StaffAction::Digit(digit),
-                Key::Erase => StaffAction::Erase,
-                Key::Enter => StaffAction::Enter,
-            });
+        // The door knows when a PIN is complete: nobody has to say so.
+        pad(ui, scale, false, &mut |key| match key {
+            Key::Digit(digit) => actions.push(StaffAction::Digit(digit)),
+            Key::Erase => actions.push(StaffAction::Erase),
+            Key::Enter => {}
         });
     });
     if ui
@@ -72,8 +71,8 @@ pub(super) enum Key {
     Enter,
 }
 
-/// The twelve keys; `press` is told each that is pressed.
-pub(super) fn pad(ui: &mut Ui, scale: f32, press: &mut dyn FnMut(Key)) {
+/// The keys, with or without [`Key::Enter`]; `press` is told each that is pressed.
+pub(super) fn pad(ui: &mut Ui, scale: f32, enter: bool, press: &mut dyn FnMut(Key)) {
     let size = vec2(KEY, KEY * 0.86) * scale;
     let rows = [
         [1, 2, 3].map(Key::Digit),
@@ -83,7 +82,7 @@ pub(super) fn pad(ui: &mut Ui, scale: f32, press: &mut dyn FnMut(Key)) {
     ];
     for row in rows {
         ui.horizontal(|ui| {
-            for key in row {
+            for key in row.into_iter().filter(|&key| enter || key != Key::Enter) {
                 let text = match key {
                     Key::Digit(digit) => RichText::new(digit.to_string()).size(26.0 * scale),
                     Key::Erase => RichText::new("Erase"),

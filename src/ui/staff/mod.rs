@@ -34,8 +34,6 @@ pub enum StaffAction {
     Digit(u8),
     /// The last digit goes.
     Erase,
-    /// The PIN is complete.
-    Enter,
     /// The panel closes.
     Leave,
     /// The program ends.
