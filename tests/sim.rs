@@ -211,6 +211,50 @@ fn commands_edit_standing_plates() {
 }
 
 #[test]
+fn an_edit_is_undone_as_one_and_gives_the_plate_back() {
+    let mut sim = sim(1000);
+    let at = DVec2::new(600.0, 340.0);
+    play(&mut sim, drag(1, at, DVec2::new(80.0, 0.0), 0, 400), 1000);
+    let command = |t_us: u64, action: Action| InputFrame {
+        t_us,
+        events: Vec::new(),
+        commands: vec![Command {
+            contact: Some(77),
+            ..Command::new(action)
+        }],
+    };
+    let before = sim.world().plates.plates()[0].motion;
+    let tip = at + DVec2::new(80.0, 0.0);
+    let step = |from: f64, to: f64| {
+        Action::EditArrow(Arrow {
+            from: tip + DVec2::new(0.0, from),
+            to: tip + DVec2::new(0.0, to),
+        })
+    };
+    let steps = [(0.0, 10.0), (10.0, 20.0), (20.0, 30.0)];
+    let frames = steps
+        .iter()
+        .zip([1_100_000, 1_150_000, 1_200_000])
+        .map(|(&(from, to), t_us)| command(t_us, step(from, to)))
+        .collect();
+    play(&mut sim, frames, 1300);
+    assert_ne!(sim.world().plates.plates()[0].motion, before);
+    play(&mut sim, vec![command(1_400_000, Action::Undo)], 1450);
+    assert_eq!(sim.world().plates.plates()[0].motion, before, "all steps of one contact");
+    play(&mut sim, vec![command(1_500_000, Action::Remove { at })], 1550);
+    assert!(sim.world().plates.plates().is_empty());
+    play(&mut sim, vec![command(1_600_000, Action::Undo)], 1650);
+    assert_eq!(sim.world().plates.plates().len(), 1);
+    // What changes nothing leaves nothing to undo: the next undo takes the push itself back.
+    let nowhere = Action::Remove {
+        at: DVec2::new(10.0, 10.0),
+    };
+    play(&mut sim, vec![command(1_700_000, nowhere)], 1750);
+    play(&mut sim, vec![command(1_800_000, Action::Undo)], 1850);
+    assert!(sim.world().plates.plates().is_empty());
+}
+
+#[test]
 fn a_world_moves_to_other_nodes() {
     let mut sim = sim(2000);
     play(

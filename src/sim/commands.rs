@@ -101,6 +101,16 @@ impl Sim {
 
     /// Plays one `do`. What means nothing here is counted.
     pub(super) fn command(&mut self, command: &Command) {
+        let edits = matches!(
+            command.action,
+            Action::Remove { .. } | Action::AddArrow(_) | Action::EditArrow(_) | Action::FlipFault { .. }
+        );
+        // One contact's edits are undone as one.
+        let goes_on = command.contact.is_some() && self.state.edited_by == command.contact;
+        let begins = edits && !goes_on;
+        if begins {
+            self.remember(command.side.unwrap_or(Side::South), false);
+        }
         let world = &mut self.state.world;
         let params = &self.params.mountain;
         let (map, now_yr) = (world.map, world.time_yr);
@@ -135,7 +145,11 @@ impl Sim {
                 false
             }
         };
+        if begins && !edited {
+            self.state.undo.pop();
+        }
         if edited {
+            self.state.edited_by = command.contact.filter(|_| edits);
             self.state.stale = true;
             self.depart(now_yr);
             if matches!(command.action, Action::AddArrow(_) | Action::EditArrow(_)) {

@@ -77,6 +77,8 @@ pub(super) struct State {
     /// Plates have changed since `uplift` was computed.
     pub(super) stale: bool,
     pub(super) undo: Vec<Arc<Snapshot>>,
+    /// The contact whose edits the newest snapshot was taken for.
+    pub(super) edited_by: Option<u64>,
     pub(super) history: History,
     /// The uplift that each unfinished push found.
     pub(super) found: BTreeMap<Leg, Arc<Uplift>>,
@@ -126,6 +128,7 @@ impl Sim {
             uplift: Arc::new(still),
             stale: false,
             undo: Vec::new(),
+            edited_by: None,
             history: History::default(),
             found: BTreeMap::new(),
             counts: SessionCounts::default(),
