@@ -1,6 +1,11 @@
 //! Draws a gesture file's land with the table's own renderer, to judge its looks without a window.
 //!
-//! `cargo run --example render_preview -- GESTURES OUT.png [plan|AZIMUTH,DEPRESSION,KM] [WIDTHxHEIGHT] [NODES] [YEARS] [COLUMNS]`
+//! `cargo run --example render_preview -- GESTURES OUT VIEWS [WIDTHxHEIGHT] [NODES] [YEARS] [COLUMNS]`
+//!
+//! Views are separated by spaces and written to `OUT-0.png`, `OUT-1.png` …: `plan`; `flight:SECONDS`; `way:T`, the
+//! eye at `T` (0 to 1) of its way from the plan into the flight; `AZIMUTH,DEPRESSION,KM` about the flight's focus.
+
+#![expect(clippy::print_stdout, reason = "a tool for the terminal")]
 
 use std::error::Error;
 use std::fs::File;
@@ -9,25 +14,48 @@ use std::time::Instant;
 use glam::DVec2;
 use orogen::gesture::file::read_gesture;
 use orogen::gpu::Gpu;
-use orogen::render::{Camera, LandStyle, Oblique, RenderQuality, picture};
+use orogen::render::{Camera, Focus, LandStyle, Oblique, RenderQuality, flight, picture};
 use orogen::sim::{Sim, SimParams, World};
+use orogen::surface::Surface;
 use orogen::survey::{Ground, Survey};
 use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let argument = |i: usize, default: &str| arguments.get(i).cloned().unwrap_or_else(|| default.to_owned());
-    let path = argument(0, "gestures/two_hands_push.gesture.jsonl");
     let (width, height) = {
         let size = argument(3, "1600x900");
         let (width, height) = size.split_once('x').ok_or("expected WIDTHxHEIGHT")?;
         (width.parse::<f64>()?, height.parse::<f64>()?)
     };
-    let file = read_gesture(File::open(&path)?, &path)?;
-    let mut params = SimParams::default();
-    params.run_on_yr = argument(5, "5e6").parse()?;
+    let surface = land(
+        &argument(0, "gestures/two_hands_push.gesture.jsonl"),
+        argument(4, "60000").parse()?,
+        argument(5, "5e6").parse()?,
+        argument(6, "1024").parse()?,
+    )?;
+    let gpu = Gpu::offscreen()?;
+    let style = LandStyle::default();
+    for (number, view) in argument(2, "plan flight:0").split_whitespace().enumerate() {
+        let camera = eye(view, &surface, &style, DVec2::new(width, height))?;
+        let began = Instant::now();
+        let path = format!("{}-{number}.png", argument(1, "render"));
+        picture(&gpu, &surface, &camera, &style, RenderQuality::PICTURE)?.save(&path)?;
+        let taken = began.elapsed().as_secs_f64() * 1e3;
+        println!("{path}: {view} on {} in {taken:.0} ms", gpu.info.name);
+    }
+    Ok(())
+}
+
+/// What the session of a gesture file yields.
+fn land(path: &str, nodes: usize, years: f64, columns: usize) -> Result<Surface, Box<dyn Error>> {
+    let file = read_gesture(File::open(path)?, path)?;
+    let params = SimParams {
+        run_on_yr: years,
+        ..SimParams::default()
+    };
     let map = PlanMap::new(file.header.size_mm, DEFAULT_SHORT_SIDE);
-    let world = World::new(map, argument(4, "60000").parse()?, file.header.seed.unwrap_or(1))?;
+    let world = World::new(map, nodes, file.header.seed.unwrap_or(1))?;
     let mut sim = Sim::new(world, params);
     for frame in file.frames {
         sim.feed(frame);
@@ -43,34 +71,30 @@ fn main() -> Result<(), Box<dyn Error>> {
         z: &sim.world().z,
         flow: &flow,
     };
-    let surface = Survey::new(tin, argument(6, "1024").parse()?).surface(ground, sim.world().time_yr);
+    Ok(Survey::new(tin, columns).surface(ground, sim.world().time_yr))
+}
 
+/// The eye that `view` names.
+fn eye(view: &str, surface: &Surface, style: &LandStyle, viewport: DVec2) -> Result<Camera, Box<dyn Error>> {
     let extent = surface.height.extent;
-    let view = argument(2, "plan");
-    let viewport = DVec2::new(width, height);
-    let camera = if view == "plan" {
-        Camera::plan(extent, viewport)
-    } else {
-        let numbers: Vec<f64> = view.split(',').map(str::parse).collect::<Result<_, _>>()?;
-        let focus = extent.size() / 2.0;
-        let oblique = Oblique {
-            focus,
-            focus_height: f64::from(surface.height.sample(focus)),
-            azimuth: numbers[0].to_radians(),
-            depression: numbers[1].to_radians(),
-            distance: numbers[2] * KM,
-            field_of_view: 0.6,
-        };
-        Camera::between(extent, viewport, &oblique, 1.0)
-    };
-    let gpu = Gpu::offscreen()?;
-    let began = Instant::now();
-    let style = LandStyle::default();
-    picture(&gpu, &surface, &camera, &style, RenderQuality::PICTURE)?.save(argument(1, "render.png"))?;
-    println!(
-        "{} in {:.0} ms",
-        gpu.info.name,
-        began.elapsed().as_secs_f64() * 1e3
-    );
-    Ok(())
+    let focus = Focus::of(surface);
+    let (kind, number) = view.split_once(':').unwrap_or((view, "0"));
+    Ok(match kind {
+        "plan" => Camera::plan(extent, viewport),
+        "flight" => Camera::between(extent, viewport, &flight(&focus, style, number.parse()?), 1.0),
+        "way" => Camera::between(extent, viewport, &flight(&focus, style, 0.0), number.parse()?),
+        _ => {
+            let numbers: Vec<f64> = view.split(',').map(str::parse).collect::<Result<_, _>>()?;
+            let [azimuth, depression, distance] = numbers[..] else {
+                return Err("expected plan, flight:SECONDS, way:T or AZIMUTH,DEPRESSION,KM".into());
+            };
+            let oblique = Oblique {
+                azimuth: azimuth.to_radians(),
+                depression: depression.to_radians(),
+                distance: distance * KM,
+                ..flight(&focus, style, 0.0)
+            };
+            Camera::between(extent, viewport, &oblique, 1.0)
+        }
+    })
 }

@@ -8,6 +8,7 @@ use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
 use orogen::input::evemu::{EvemuOptions, import_evemu};
+use orogen::settings::Settings;
 
 /// Ticks of 16 ms that follow a frame, at most: enough for every timer of the hands to run out.
 const TICKS_AFTER_FRAME: u64 = 40;
@@ -45,6 +46,19 @@ pub(crate) fn evemu_import(bytes: &[u8]) {
             }
             Err(error) => one_line(&error.to_string()),
         }
+    }
+}
+
+/// A settings file is refused in one line, or can be written and reads back equal.
+pub(crate) fn settings(bytes: &[u8]) {
+    match Settings::parse(bytes, "fuzz") {
+        Ok(settings) => {
+            let written = settings.to_toml();
+            let again = Settings::parse(written.as_bytes(), "again").expect("what was written can be read");
+            assert_eq!(again, settings);
+            assert_eq!(again.to_toml(), written);
+        }
+        Err(error) => one_line(&error.to_string()),
     }
 }
 

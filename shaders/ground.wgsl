@@ -13,7 +13,7 @@ struct Ground {
     lowland: f32,
     // Share of the newest land that is mixed into the land as drawn, 0 to 1.
     blend: f32,
-    // Heights are multiplied by this before they are lit.
+    // Heights are multiplied by this where the land is seen aslant.
     exaggeration: f32,
     // Upper edge of the forest and lower edge of lasting snow, metres.
     tree_line: f32,
@@ -22,15 +22,13 @@ struct Ground {
     summit: f32,
     // Cells of a rim whose heights only hold the border.
     rim: f32,
-    // Greatest lake depth and range of drainage (log10 m2) that a byte holds.
+    // Greatest lake depth that a byte holds, metres.
     deepest: f32,
-    drainage_low: f32,
-    drainage_high: f32,
     // Heights between which the ramps of colour are read, metres.
     ramp_low: f32,
     ramp_high: f32,
-    // The sun's height over the horizon, radians.
-    sun_elevation: f32,
+    // 1 if the land is also lit for the view aslant.
+    aslant: f32,
 }
 
 @group(0) @binding(0) var<uniform> ground: Ground;

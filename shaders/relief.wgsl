@@ -68,22 +68,25 @@ fn forms(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4<f32>(sum / total / 1000.0, 0.0, 0.0, 0.0);
 }
 
-// Sunlight that gets past the mountains, and the part of the sky that is seen.
-@fragment
-fn light(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let size = ground.extent / ground.grid;
-    let start = position.xy * LIGHT_CELLS;
-    let here = level(vec2<i32>(start));
-    // Towards the sun in the north-west: the tangent of the horizon there.
-    var horizon = -1.0;
+// Tangent of the horizon in a direction (cells), as far as shadows reach.
+fn horizon(start: vec2<f32>, here: f32, way: vec2<f32>) -> f32 {
+    let cell = 0.5 * (ground.extent.x / ground.grid.x + ground.extent.y / ground.grid.y);
+    var rim = -1.0;
     var distance = 0.9 * LIGHT_CELLS;
     for (var step = 0; step < SUN_STEPS; step++) {
-        let cell = start + vec2<f32>(-0.70710678, -0.70710678) * distance;
-        let rise = (level(vec2<i32>(cell)) - here) * ground.exaggeration;
-        horizon = max(horizon, rise / (distance * 0.5 * (size.x + size.y)));
+        rim = max(rim, (level(vec2<i32>(start + way * distance)) - here) / (distance * cell));
         distance = distance * SUN_STRIDE + 0.35;
     }
-    let sun = 1.0 - smoothstep(PENUMBRA_LOW, PENUMBRA_HIGH, horizon);
+    return rim;
+}
+
+// Sunlight that gets past the mountains, the part of the sky that is seen, and the evening's sunlight.
+@fragment
+fn light(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let start = position.xy * LIGHT_CELLS;
+    let here = level(vec2<i32>(start));
+    let sun = 1.0 - smoothstep(PENUMBRA_LOW, PENUMBRA_HIGH, horizon(start, here, vec2<f32>(-0.70710678, -0.70710678)));
+    let cell = 0.5 * (ground.extent.x / ground.grid.x + ground.extent.y / ground.grid.y);
     var sky = 0.0;
     for (var direction = 0; direction < SKY_DIRECTIONS; direction++) {
         let angle = (f32(direction) + 0.5) * 6.2831853 / f32(SKY_DIRECTIONS);
@@ -91,12 +94,18 @@ fn light(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         var rim = 0.0;
         var far = 1.2 * LIGHT_CELLS;
         for (var step = 0; step < SKY_STEPS; step++) {
-            let rise = (level(vec2<i32>(start + way * far)) - here) * ground.exaggeration;
-            rim = max(rim, rise / (far * 0.5 * (size.x + size.y)));
+            let rise = level(vec2<i32>(start + way * far)) - here;
+            rim = max(rim, rise / (far * cell));
             far = far * SKY_STRIDE + 0.4;
         }
         // Of a direction's sky, what is above the horizon (Lambert's weight): the square of the cosine.
         sky += 1.0 / (1.0 + rim * rim);
     }
-    return vec4<f32>(sun, sky / f32(SKY_DIRECTIONS), 0.0, 1.0);
+    var evening = 1.0;
+    if ground.aslant > 0.5 {
+        // Rows count southwards.
+        let rim = horizon(start, here, vec2<f32>(EVENING_EAST, -EVENING_NORTH)) * ground.exaggeration;
+        evening = 1.0 - smoothstep(0.72 * EVENING_TANGENT, 1.25 * EVENING_TANGENT, rim);
+    }
+    return vec4<f32>(sun, sky / f32(SKY_DIRECTIONS), evening, 1.0);
 }

@@ -17,6 +17,13 @@ const SKY = vec3<f32>(0.43, 0.63, 1.0);
 // Share of the light on flat ground that comes from the sun.
 const SUN_SHARE = 0.66;
 
+// Half a wavelength of crags, metres.
+const CRAGS = 170.0;
+// Colours of the evening.
+const EVENING_SUN = vec3<f32>(2.55, 1.58, 0.78);
+const EVENING_SKY = vec3<f32>(0.20, 0.275, 0.45);
+const EVENING_GROUND = vec3<f32>(0.10, 0.075, 0.05);
+
 // Cubic B-spline from four bilinear looks: a linear one would show the cells.
 fn spline(image: texture_2d<f32>, uv: vec2<f32>) -> vec4<f32> {
     let size = vec2<f32>(textureDimensions(image));
@@ -38,7 +45,7 @@ fn spline(image: texture_2d<f32>, uv: vec2<f32>) -> vec4<f32> {
 }
 
 fn towards(slope: vec2<f32>, up: f32, way: vec2<f32>) -> f32 {
-    return max(up * (sin(ground.sun_elevation) - cos(ground.sun_elevation) * dot(slope, way)), 0.0);
+    return max(up * (SUN_SINE - SUN_COSINE * dot(slope, way)), 0.0);
 }
 
 // Cosine of the sun's incidence on a slope: seven tenths by the sun itself, the rest by suns in the west and north
@@ -94,9 +101,28 @@ fn carve(plan: vec2<f32>, down: vec2<f32>, steep: f32, texel: f32) -> vec3<f32> 
     return carved;
 }
 
-@fragment
-fn sheet(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let uv = position.xy / ground.sheet;
+// The land at a texel, as light finds it.
+struct Lain {
+    plan: vec2<f32>,
+    // What lies there, in even light.
+    colour: vec3<f32>,
+    // How much of it is snow.
+    snow: f32,
+    // Slope with its gullies, and that of the big forms.
+    slope: vec2<f32>,
+    form_slope: vec2<f32>,
+    // Over a few mesh edges.
+    steep: f32,
+    height: f32,
+    // Sunlight that gets past the mountains, part of the sky that is seen, the evening's sunlight.
+    passed: vec3<f32>,
+    lake: f32,
+    depth: f32,
+    river: f32,
+}
+
+fn lain(position: vec2<f32>) -> Lain {
+    let uv = position / ground.sheet;
     let plan = vec2<f32>(uv.x, 1.0 - uv.y) * ground.extent;
     let texel = ground.extent.x / ground.sheet.x;
     let slope4 = spline(slopes, uv);
@@ -125,22 +151,7 @@ fn sheet(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         furrow = carved.z;
     }
 
-    // Light.
-    let height_share = smoothstep(0.0, ground.summit, height);
-    let relief = ground.exaggeration;
-    let gentle = lowland_gain((length(form_slope) + 0.5 * steep) * relief) * relief;
-    let direct = 0.74 * sun_on(slope * gentle) + 0.26 * sun_on(form_slope * gentle * 1.3);
-    let passed = textureSampleLevel(lit, smooth_sampler, uv, 0.0);
-    let up = inverseSqrt(1.0 + dot(slope, slope) * relief * relief);
-    let sun = direct / sin(ground.sun_elevation) * (0.40 + 0.60 * passed.x);
-    let dome = passed.y * passed.y * (0.5 + 0.5 * up);
-    let white = SUN * SUN_SHARE + SKY * (1.0 - SUN_SHARE);
-    var light = (SUN * (SUN_SHARE * sun) + SKY * ((1.0 - SUN_SHARE) * dome)) / white;
-    light = 1.0 + (light - 1.0) * (0.95 + 0.25 * height_share);
-    light = max(light, vec3<f32>(0.0));
-    let over = max(light - 1.0, vec3<f32>(0.0));
-    let under = max(1.0 - light, vec3<f32>(0.0));
-    light = 1.0 + over / (1.0 + 1.6 * over) - under / (1.0 + 0.22 * under);
+    let passed = textureSampleLevel(lit, smooth_sampler, uv, 0.0).xyz;
 
     // What grows and lies there.
     let places = (textureSampleLevel(cover_noise, smooth_sampler, uv, 0.0).xy - 0.5) / 0.35;
@@ -186,15 +197,81 @@ fn sheet(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let lies = smoothstep(snow_line - 90.0, snow_line + 190.0, height + 120.0 * fine);
     let slides = smoothstep(0.85, 1.25, steepness + 0.08 * fine);
     let snow = lies * (1.0 - 0.75 * slides);
-    colour = mix(colour, colour_of(SNOW), snow) * light;
+    colour = mix(colour, colour_of(SNOW), snow);
 
-    // Water.
     let depth = wet.x * wet.x * ground.deepest;
-    let lake = smoothstep(0.15, 0.85, depth);
+    return Lain(plan, colour, snow, slope, form_slope, steep, height, passed, smoothstep(0.15, 0.85, depth), depth, river.x);
+}
+
+// Light from the north-west as a draughtsman sets it, relative to flat open ground.
+fn noon(land: Lain) -> vec3<f32> {
+    let gentle = lowland_gain(length(land.form_slope) + 0.5 * land.steep);
+    let direct = 0.74 * sun_on(land.slope * gentle) + 0.26 * sun_on(land.form_slope * gentle * 1.3);
+    let up = inverseSqrt(1.0 + dot(land.slope, land.slope));
+    let sun = direct / SUN_SINE * (0.40 + 0.60 * land.passed.x);
+    let dome = land.passed.y * land.passed.y * (0.5 + 0.5 * up);
+    let white = SUN * SUN_SHARE + SKY * (1.0 - SUN_SHARE);
+    var light = (SUN * (SUN_SHARE * sun) + SKY * ((1.0 - SUN_SHARE) * dome)) / white;
+    light = 1.0 + (light - 1.0) * (0.95 + 0.25 * smoothstep(0.0, ground.summit, land.height));
+    light = max(light, vec3<f32>(0.0));
+    let over = max(light - 1.0, vec3<f32>(0.0));
+    let under = max(1.0 - light, vec3<f32>(0.0));
+    return 1.0 + over / (1.0 + 1.6 * over) - under / (1.0 + 0.22 * under);
+}
+
+// The colour of water of some depth over a bottom in some light.
+fn standing_water(depth: f32, bottom: vec3<f32>, sky: f32) -> vec3<f32> {
     let share = 0.45 * smoothstep(5.0, 400.0, depth) + 0.55 * (1.0 - exp(-depth / 260.0));
-    let lake_colour = mix(colour_of(SHALLOW), colour_of(DEEP), share) * mix(vec3<f32>(1.0), light, 0.22) * (0.80 + 0.20 * passed.y);
-    let shore = lake * (1.0 - smoothstep(0.85, 6.0, depth));
-    colour = mix(colour, colour_of(SHORE) * mix(vec3<f32>(1.0), light, 0.5), 0.92 * river.x * (1.0 - lake));
-    colour = mix(colour, mix(lake_colour, colour_of(SHORE), 0.55 * shore), lake);
-    return vec4<f32>(colour, max(lake, river.x));
+    return mix(colour_of(SHALLOW), colour_of(DEEP), share) * mix(vec3<f32>(1.0), bottom, 0.22) * (0.80 + 0.20 * sky);
+}
+
+// The printed map's colour.
+fn mapped(land: Lain) -> vec3<f32> {
+    let light = noon(land);
+    let shore = land.lake * (1.0 - smoothstep(0.85, 6.0, land.depth));
+    var colour = land.colour * light;
+    colour = mix(colour, colour_of(SHORE) * mix(vec3<f32>(1.0), light, 0.5), 0.92 * land.river * (1.0 - land.lake));
+    let lake = standing_water(land.depth, light, land.passed.y);
+    return mix(colour, mix(lake, colour_of(SHORE), 0.55 * shore), land.lake);
+}
+
+// The same land in the evening: a low warm sun on one side, the blue of the sky on the other.
+fn at_evening(land: Lain) -> vec3<f32> {
+    // Crags, finer than what the gullies know.
+    let crags = vec2<f32>(gradient(land.plan / CRAGS, 31u), gradient(land.plan / CRAGS, 37u));
+    let rough = 0.42 * smoothstep(0.15, 0.8, land.steep) * (1.0 - 0.5 * land.snow);
+    let slope = (mix(land.slope, land.form_slope, 0.15) + rough * crags) * ground.exaggeration;
+    let up = inverseSqrt(1.0 + dot(slope, slope));
+    let direct = max(up * (EVENING_SINE - EVENING_COSINE * dot(slope, vec2<f32>(EVENING_EAST, EVENING_NORTH))), 0.0);
+    let dome = land.passed.y * land.passed.y * (0.45 + 0.55 * up);
+    // What the sunlit land throws back into the shade.
+    let back = max(dot(slope, vec2<f32>(EVENING_EAST, EVENING_NORTH)) * up, 0.0);
+    let light = EVENING_SUN * (direct * land.passed.z) + EVENING_SKY * dome + EVENING_GROUND * back;
+    // Low light makes colours deep, all but the snow's.
+    let deep = mix(pow(land.colour, vec3<f32>(1.28)), land.colour, land.snow);
+    let lake = mix(colour_of(SHALLOW), colour_of(DEEP), 0.5 + 0.5 * (1.0 - exp(-land.depth / 120.0)));
+    let wet = max(land.lake, 0.9 * land.river);
+    let water = mix(colour_of(SHORE), lake, land.lake) * mix(EVENING_SKY, vec3<f32>(0.34), 0.4);
+    let colour = mix(deep * light, water, wet);
+    // The brightest lights come out softly.
+    let over = max(colour - 0.6, vec3<f32>(0.0));
+    return min(colour, vec3<f32>(0.6)) + over / (1.0 + 1.7 * over);
+}
+
+@fragment
+fn sheet(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let land = lain(position.xy);
+    return vec4<f32>(mapped(land), max(land.lake, land.river));
+}
+
+struct Sheets {
+    @location(0) map: vec4<f32>,
+    @location(1) evening: vec4<f32>,
+}
+
+@fragment
+fn sheets(@builtin(position) position: vec4<f32>) -> Sheets {
+    let land = lain(position.xy);
+    let water = max(land.lake, land.river);
+    return Sheets(vec4<f32>(mapped(land), water), vec4<f32>(at_evening(land), water));
 }

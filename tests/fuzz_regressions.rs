@@ -36,17 +36,27 @@ fn evemu_import() {
     assert!(replay("evemu_import", checks::evemu_import) >= 2);
 }
 
+#[test]
+fn settings() {
+    assert!(replay("settings", checks::settings) >= 2);
+}
+
 /// Seeds that are refused at the first line would teach the fuzzer nothing.
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
     use orogen::input::evemu::{EvemuOptions, import_evemu};
+    use orogen::settings::Settings;
 
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
     for name in ["grammar", "split", "commands"] {
         let path = seeds.join(format!("gesture_reader/{name}.gesture.jsonl"));
         let file = read_gesture(fs::File::open(path).unwrap(), name).unwrap();
         assert!(file.frames.len() >= 5, "{name}");
+    }
+    for name in ["few", "sample"] {
+        let bytes = fs::read(seeds.join(format!("settings/{name}.toml"))).unwrap();
+        Settings::parse(&bytes, name).unwrap();
     }
     let options = EvemuOptions {
         range: None,

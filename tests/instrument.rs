@@ -423,6 +423,14 @@ fn controls_wake_near_hands_and_become_quiet_again() {
     assert!(glow(&table, Side::South) > 0.3);
     table.wait(10_000);
     assert!(glow(&table, Side::South) < 0.01);
+    // The pointer of a mouse wakes them too.
+    let at = table.place(Side::North, ControlKind::PlayPause);
+    table.instrument.point(Some(at));
+    table.wait(500);
+    assert!(glow(&table, Side::North) > 0.9);
+    table.instrument.point(None);
+    table.wait(10_000);
+    assert!(glow(&table, Side::North) < 0.01);
 }
 
 #[test]

@@ -136,16 +136,77 @@ const RULES: &[Rule] = &[
         ],
         reason: "what lies on the land is drawn from plain data",
     },
+    Rule {
+        module: "instrument",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::picture",
+            "crate::kiosk",
+        ],
+        reason: "the instrument sees marks and a clock, and no world",
+    },
+    Rule {
+        module: "kiosk",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::surface",
+            "crate::live",
+            "crate::picture",
+            "crate::instrument",
+        ],
+        reason: "the circle knows contacts and times",
+    },
+    Rule {
+        module: "settings",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::surface",
+            "crate::live",
+            "crate::picture",
+            "crate::instrument",
+            "crate::kiosk",
+        ],
+        reason: "settings are read by all and read nobody",
+    },
 ];
 
 /// Modules that must run without window, card, clock and environment: all but the command line.
-const CORE: [&str; 11] = [
-    "units", "gesture", "mountain", "terrain", "surface", "survey", "sim", "live", "report", "picture",
+const CORE: [&str; 14] = [
+    "units",
+    "gesture",
+    "mountain",
+    "terrain",
+    "surface",
+    "survey",
+    "sim",
+    "live",
+    "instrument",
+    "kiosk",
+    "settings",
+    "report",
+    "picture",
     "input",
 ];
 /// Modules that must not touch files: they read and write through `Read` and `Write`, or not at all.
-const WITHOUT_FILES: [&str; 9] = [
-    "units", "gesture", "mountain", "terrain", "surface", "survey", "sim", "live", "report",
+const WITHOUT_FILES: [&str; 12] = [
+    "units",
+    "gesture",
+    "mountain",
+    "terrain",
+    "surface",
+    "survey",
+    "sim",
+    "live",
+    "instrument",
+    "kiosk",
+    "settings",
+    "report",
 ];
 
 /// Code of a file without comments, doc comments and its test module.

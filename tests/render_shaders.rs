@@ -76,10 +76,10 @@ fn every_shader_is_valid() {
 fn shared_layouts_are_the_same_on_both_sides() {
     let layouts = [
         layout!(Ground in "sheet": extent, grid, sheet, spacing, lowland, blend, exaggeration, tree_line, snow_line,
-            summit, rim, deepest, drainage_low, drainage_high, ramp_low, ramp_high, sun_elevation),
+            summit, rim, deepest, ramp_low, ramp_high, aslant),
         layout!(View in "land": view_proj, eye, right, up, forward, extent, mesh, plan, tilt, exaggeration, lowland,
-            summit, haze, lamp, encoded, distance),
-        layout!(Air in "land": valley, distance, glow, horizon, zenith, table),
+            summit, haze, lamp, encoded, dusk),
+        layout!(Air in "land": valley, mist, distance, glow, horizon, middle, zenith, table),
         layout!(Reach in "rivers": from_to, half_widths, large),
     ];
     for layout in &layouts {
@@ -91,9 +91,9 @@ fn shared_layouts_are_the_same_on_both_sides() {
 #[test]
 fn a_layout_that_drifts_is_found() {
     let module = parse("land");
-    let swapped = layout!(Air in "land": distance, valley, glow, horizon, zenith, table);
+    let swapped = layout!(Air in "land": mist, valley, distance, glow, horizon, middle, zenith, table);
     assert_eq!(differences(&swapped, &module).len(), 1);
-    let short = layout!(Air in "land": valley, distance, glow, horizon, zenith);
+    let short = layout!(Air in "land": valley, mist, distance, glow, horizon, middle, zenith);
     assert_eq!(differences(&short, &module).len(), 1);
     let unknown = Layout {
         name: "Moon",

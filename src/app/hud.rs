@@ -220,7 +220,8 @@ impl Hud {
         let (map, aloft) = (table.map(), table.aloft());
         let flat = Sight::flat(map, rect);
         let frame = table.frame();
-        let (camera, exaggeration) = (*table.camera(), f64::from(table.style().exaggeration));
+        let camera = *table.camera();
+        let exaggeration = table.style().drawn_exaggeration(camera.tilt());
         let project = |plan: DVec2, height: f64| {
             let at = camera.project(plan.extend(height * exaggeration))?;
             Some(point(at))

@@ -4,7 +4,6 @@
 //! session's thread ([`crate::live`]) owns the world; the watch reads the heartbeats of both. This is the only module
 //! beside the command line that reads a clock, and it hands the time on as a number.
 
-mod focus;
 mod governor;
 mod graphics;
 mod hud;

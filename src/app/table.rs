@@ -6,7 +6,6 @@ use std::path::Path;
 use glam::DVec2;
 use serde::Serialize;
 
-use super::focus::Focus;
 use super::graphics::Graphics;
 use super::metrics::Facts;
 use super::save::Saver;
@@ -19,7 +18,7 @@ use crate::kiosk::{
     DoorParams, DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor,
 };
 use crate::live::{Frame, Heartbeat, LiveParams, Session, Start};
-use crate::render::{Camera, LandStyle, plan_rect};
+use crate::render::{Camera, Focus, LandStyle, flight, plan_rect};
 use crate::settings::Settings;
 use crate::sim::SimParams;
 use crate::units::PlanMap;
@@ -34,8 +33,8 @@ const NODES: [usize; 3] = [60_000, 30_000, 15_000];
 const MANY_CORES: usize = 8;
 /// Time in which the room's light follows a reset, s.
 const EASE_S: f64 = 0.25;
-/// How many times as high mountains are drawn in full flight: from aslant they look lower than they feel.
-const EXAGGERATION: f64 = 1.7;
+/// Time in which the eye follows a land that changes under it, s: slower than anybody notices.
+const FOLLOWS_S: f64 = 6.0;
 /// Where a fingertip is held in the staff's corner, mm from both edges.
 const FINGERTIP_MM: f64 = 12.0;
 /// How long touches do nothing while the table is wiped, µs.
@@ -112,6 +111,9 @@ pub(super) struct Table {
     panels: Vec<(DVec2, DVec2)>,
     seen: Vec<Seen>,
     focus: Focus,
+    focus_goal: Focus,
+    /// The land that the goal was found on.
+    focus_land: u64,
     camera: Camera,
     style: LandStyle,
     visitors: u64,
@@ -149,6 +151,7 @@ impl Table {
             threads: 0,
         })
         .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
+        let focus = Focus::of(&session.current().surface);
         Ok(Self {
             unattended,
             map,
@@ -165,7 +168,9 @@ impl Table {
             saver: Saver::new(options.save.clone()),
             panels: Vec::new(),
             seen: Vec::new(),
-            focus: Focus::default(),
+            focus,
+            focus_goal: focus,
+            focus_land: 0,
             camera: Camera::plan(map.extent(), size_px),
             style: LandStyle::default(),
             visitors: 1,
@@ -460,12 +465,19 @@ impl Table {
     /// Camera, exaggeration and light of the next picture.
     fn look(&mut self, settings: &Settings, dt_s: f64) {
         let aloft = self.flight.amount();
-        let surface = &self.session.current().surface;
-        self.focus.follow(surface, aloft, dt_s);
-        let extent = self.map.extent();
-        let exaggeration = 1.0 + (EXAGGERATION - 1.0) * aloft;
-        let eye = self.focus.eye(self.flight.aloft_s(), exaggeration);
-        self.camera = Camera::between(extent, self.size_px, &eye, aloft);
+        if self.focus_land != self.frame().land {
+            // Looked for only where the eye may be needed: when the land has changed.
+            self.focus_land = self.frame().land;
+            self.focus_goal = Focus::of(&self.frame().surface);
+        }
+        let follows = if aloft > 0.0 {
+            1.0 - (-dt_s / FOLLOWS_S).exp()
+        } else {
+            1.0
+        };
+        self.focus = self.focus.towards(&self.focus_goal, follows);
+        let eye = flight(&self.focus, &self.style, self.flight.aloft_s());
+        self.camera = Camera::between(self.map.extent(), self.size_px, &eye, aloft);
         let lamp_goal = match self.kiosk.phase() {
             Phase::Reset => 0.0,
             _ => 1.0,
@@ -475,11 +487,7 @@ impl Table {
         } else {
             1.0 - (-dt_s / EASE_S).exp()
         };
-        self.style = LandStyle {
-            exaggeration: exaggeration as f32,
-            lamp: self.style.lamp + (lamp_goal - self.style.lamp) * eased as f32,
-            ..LandStyle::default()
-        };
+        self.style.lamp += (lamp_goal - self.style.lamp) * eased as f32;
     }
 
     /// Does what the circle asks for.

@@ -270,12 +270,8 @@ impl Open {
         let now_ms = now_us / 1000;
         let door = self.table.door();
         match action {
-            StaffAction::Digit(digit) => {
-                door.digit(digit, now_ms);
-                if door.typed() == settings.staff.pin.len() {
-                    door.enter(now_ms);
-                }
-            }
+            StaffAction::Digit(digit) => door.digit(digit, now_ms),
+            StaffAction::Enter => door.enter(now_ms),
             StaffAction::Erase => door.erase(now_ms),
             StaffAction::Leave => door.close(),
             StaffAction::Quit => return true,

@@ -13,6 +13,7 @@
 mod control;
 mod deed;
 mod edit;
+mod history;
 mod layout;
 mod press;
 mod speed;

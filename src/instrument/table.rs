@@ -7,10 +7,11 @@ use glam::DVec2;
 use super::control::{ControlId, ControlKind, ControlView};
 use super::deed::{Deed, EditView, Key, Route, Scene};
 use super::edit::Edit;
+use super::history;
 use super::layout::{Placed, layout};
 use super::press::{Finger, Press};
 use super::speed;
-use crate::gesture::command::{Action, Command, MAX_YEARS, Tool};
+use crate::gesture::command::{Action, Command, Tool};
 use crate::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Side, Source};
 use crate::gesture::params::GestureParams;
 use crate::live::Clock;
@@ -25,9 +26,6 @@ const QUIET_US: f64 = 1_200_000.0;
 
 /// Longest time between two looks that counts for glow, µs: after a halt controls do not flash.
 const LONGEST_TICK_US: u64 = 100_000;
-
-/// One step through the land's history by keys, as a part of it.
-const HISTORY_STEP: f64 = 0.05;
 
 /// What an instrument is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +55,7 @@ pub struct Instrument {
     /// Tools and figures of the north and south side.
     tools: [Tool; 2],
     readouts: [bool; 2],
+    pointer: Option<DVec2>,
     clock: Clock,
     now_us: u64,
     deeds: Vec<Deed>,
@@ -104,6 +103,7 @@ impl Instrument {
             presses: BTreeMap::new(),
             tools: [Tool::Push; 2],
             readouts: [params.readouts; 2],
+            pointer: None,
             clock: Clock::default(),
             now_us: 0,
             deeds: Vec::new(),
@@ -182,16 +182,8 @@ impl Instrument {
                 return self.command(Some(Action::Speed(pace)), Side::South, None);
             }
             Key::Back | Key::Forward if down => {
-                let step = if key == Key::Forward {
-                    HISTORY_STEP
-                } else {
-                    -HISTORY_STEP
-                };
-                let years = self.years_at((self.place_in_history() + step).clamp(0.0, 1.0));
-                if self.has_history() {
-                    self.command(Some(Action::Scrub(years)), Side::South, None);
-                }
-                return;
+                let years = history::stepped(&self.clock, key == Key::Forward);
+                return self.command(years.map(Action::Scrub), Side::South, None);
             }
             Key::Faster | Key::Slower | Key::Back | Key::Forward => return,
         };
@@ -206,16 +198,19 @@ impl Instrument {
         }
     }
 
+    /// The mouse's pointer is there (table mm): it wakes controls as a hand does.
+    pub fn point(&mut self, pointer: Option<DVec2>) {
+        self.pointer = pointer;
+    }
+
     /// Time goes on: what is held long enough acts, arrows and the slider follow their fingers, controls wake and
     /// become quiet. To be called once a frame.
     pub fn tick(&mut self, now_us: u64, scene: &Scene<'_>) {
         let passed_us = now_us.saturating_sub(self.now_us).min(LONGEST_TICK_US) as f64;
         self.look(now_us, scene);
         for (i, placed) in self.placed.iter().enumerate() {
-            let hands = self.contacts.values();
-            let near = hands
-                .map(|held| placed.distance(held.at))
-                .fold(f64::INFINITY, f64::min);
+            let hands = self.contacts.values().map(|held| held.at).chain(self.pointer);
+            let near = hands.map(|at| placed.distance(at)).fold(f64::INFINITY, f64::min);
             let goal = (1.0 - near / GLOW_REACH_MM).max(0.0);
             let time = if goal > self.glow[i] { WAKE_US } else { QUIET_US };
             self.glow[i] += (goal - self.glow[i]) * (1.0 - (-passed_us / time).exp());
@@ -447,34 +442,14 @@ impl Instrument {
         let (Some(placed), Some(press)) = (placed, self.presses.get_mut(&id)) else {
             return;
         };
-        if id.1 != ControlKind::Scrub || self.clock.history_yr.1 <= self.clock.history_yr.0 {
+        if id.1 != ControlKind::Scrub || !history::exists(&self.clock) {
             return;
         }
         if let Some(part) = press.follow(placed.along(press.at), now_us) {
             let contact = press.finger.contact();
-            let years = self.years_at(part);
+            let years = history::years_at(&self.clock, part);
             self.command(Some(Action::Scrub(years)), id.0, contact);
         }
-    }
-
-    fn has_history(&self) -> bool {
-        self.clock.history_yr.1 > self.clock.history_yr.0
-    }
-
-    /// Where the clock stands in the land's history, 0–1.
-    fn place_in_history(&self) -> f64 {
-        let (first, last) = self.clock.history_yr;
-        if self.has_history() {
-            ((self.clock.elapsed_yr - first) / (last - first)).clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// Whole years at a place in the land's history.
-    fn years_at(&self, part: f64) -> f64 {
-        let (first, last) = self.clock.history_yr;
-        (first + (last - first) * part).round().clamp(0.0, MAX_YEARS)
     }
 
     fn view(&self, placed: &Placed, glow: f64) -> ControlView {
@@ -497,13 +472,15 @@ impl Instrument {
             },
             enabled: match kind {
                 ControlKind::Undo => self.clock.can_undo[side as usize],
-                ControlKind::Scrub => self.has_history(),
+                ControlKind::Scrub => history::exists(&self.clock),
                 _ => true,
             },
             value: match kind {
                 ControlKind::Speed => speed::place(self.clock.pace_yr_per_s),
                 // While a finger drags it, the slider is where the finger is: the land follows.
-                ControlKind::Scrub => press.map_or_else(|| self.place_in_history(), |p| placed.along(p.at)),
+                ControlKind::Scrub => {
+                    press.map_or_else(|| history::place(&self.clock), |p| placed.along(p.at))
+                }
                 _ => 0.0,
             },
             glow: if press.is_some() { 1.0 } else { glow },

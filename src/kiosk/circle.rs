@@ -3,7 +3,7 @@
 use super::hint::Hint;
 use super::lived::Lived;
 use super::presence::Presence;
-use crate::gesture::contact::ContactEvent;
+use crate::gesture::contact::{ContactEvent, Phase as Touch};
 use crate::settings::KioskSettings;
 
 /// How long the land takes to become fresh before the eyes, ms.
@@ -172,7 +172,12 @@ impl Kiosk {
     pub fn feed(&mut self, event: &ContactEvent, now_ms: u64) {
         let now_ms = self.lived.at(now_ms);
         if self.presence.feed(event, now_ms) {
-            self.somebody();
+            if event.phase == Touch::Up {
+                // Whoever lifts was there, but begins nothing: staff's finger leaves the button that resets.
+                self.present_ms = now_ms;
+            } else {
+                self.somebody();
+            }
         }
         self.go_on();
     }
@@ -208,8 +213,7 @@ impl Kiosk {
     fn somebody(&mut self) {
         self.present_ms = self.lived.total();
         match self.stage {
-            Stage::Attract | Stage::Reset => self.enter(Stage::Invite),
-            Stage::Warning { sculpted: false } => self.enter(Stage::Invite),
+            Stage::Attract | Stage::Reset | Stage::Warning { sculpted: false } => self.enter(Stage::Invite),
             Stage::Warning { sculpted: true } => self.enter(Stage::Play),
             Stage::Invite | Stage::Play => {}
         }
@@ -233,7 +237,7 @@ impl Kiosk {
                 });
             }
             Stage::Warning { .. } if self.in_stage_ms() >= self.params.countdown_ms => {
-                self.enter(Stage::Reset)
+                self.enter(Stage::Reset);
             }
             Stage::Invite | Stage::Play | Stage::Warning { .. } => {}
         }

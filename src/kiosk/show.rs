@@ -118,15 +118,11 @@ impl Show {
         if !self.playing || self.clips.is_empty() {
             return step;
         }
-        let begun_us = match self.begun_us {
-            Some(begun_us) => begun_us,
-            None => {
-                step.fresh = Some(self.clips[self.clip].seed);
-                self.played = 0;
-                lived_us
-            }
-        };
-        self.begun_us = Some(begun_us);
+        if self.begun_us.is_none() {
+            step.fresh = Some(self.clips[self.clip].seed);
+            self.played = 0;
+        }
+        let begun_us = *self.begun_us.get_or_insert(lived_us);
         let time_us = lived_us - begun_us;
         let frames = &self.clips[self.clip].frames;
         while let Some(frame) = frames.get(self.played).filter(|frame| frame.t_us <= time_us) {

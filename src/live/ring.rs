@@ -189,7 +189,9 @@ mod tests {
     fn reread(ring: &Ring) -> GestureFile {
         let bytes = ring.write(Vec::new()).unwrap();
         let file = read_gesture(bytes.as_slice(), "ring").unwrap();
-        assert_eq!(file.write(Vec::new()).unwrap(), bytes, "canonical");
+        if file.warnings.is_empty() {
+            assert_eq!(file.write(Vec::new()).unwrap(), bytes, "canonical");
+        }
         file
     }
 
@@ -229,7 +231,7 @@ mod tests {
         let later = RING_US + 1_000_000;
         ring.record(&frame(later, vec![event(Phase::Move, 1, 40.0)], vec![]));
         let file = reread(&ring);
-        assert_eq!(file.frames.len(), 2);
+        assert_eq!(file.frames.len(), 3, "the end of the file lifts the finger");
         let [first, second] = [&file.frames[0], &file.frames[1]];
         assert_eq!((first.t_us, first.events.len()), (0, 1));
         assert_eq!(first.events[0].phase, Phase::Down);

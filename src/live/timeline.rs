@@ -167,7 +167,7 @@ mod tests {
         for tick in 0..8 {
             all.extend(stamps(&mut timeline, tick * TICK_US));
         }
-        assert_eq!(all, [0, 3_200, 16_001, 28_800, 32_001, 82_000]);
+        assert_eq!(all, [0, 3_200, 16_000, 28_800, 32_000, 82_000]);
         // The table goes on, and so does the session.
         timeline.take(Vec::new(), Vec::new(), 2_100_000);
         timeline.advance(2_100_000);

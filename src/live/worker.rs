@@ -57,6 +57,8 @@ pub(super) struct Worker {
     panics: u64,
     steps: u64,
     sequence: u64,
+    /// The session is not what the last frame shows.
+    changed: bool,
     /// What the next batch is to do, beside playing.
     restart: Option<Start>,
     saves: Vec<Sender<Checkpoint>>,
@@ -89,6 +91,7 @@ impl Worker {
             panics: 0,
             steps: 0,
             sequence: 0,
+            changed: true,
             restart: None,
             saves: Vec::new(),
             rings: Vec::new(),
@@ -100,8 +103,8 @@ impl Worker {
     /// Serves `messages` until the session ends. All work is done in `pool`.
     pub(super) fn run(mut self, messages: &Receiver<Message>, pool: &ThreadPool) {
         loop {
-            // Who has caught up sleeps until there is news.
-            let first = if self.is_behind() {
+            // Who has nothing left to do sleeps until there is news.
+            let first = if self.has_work() {
                 messages.try_recv().ok()
             } else if let Ok(message) = messages.recv() {
                 Some(message)
@@ -123,6 +126,11 @@ impl Worker {
 
     fn is_behind(&self) -> bool {
         self.timeline.reaches(self.sim.ticks() * TICK_US)
+    }
+
+    /// True where another batch is due without further news: ticks are left, or a panic came first.
+    fn has_work(&self) -> bool {
+        self.is_behind() || self.changed || !(self.saves.is_empty() && self.rings.is_empty())
     }
 
     /// Takes a message; false for the last one.
@@ -151,9 +159,10 @@ impl Worker {
 
     /// Plays the ticks that are due (or some of them, where they are many), and shows what has become of the land.
     fn batch(&mut self) {
-        let restarted = self.restart.take().map(|start| self.begin(start)).is_some();
-        let first_tick = self.sim.ticks();
-        self.timeline.keep_up(first_tick * TICK_US);
+        if let Some(start) = self.restart.take() {
+            self.begin(start);
+        }
+        self.timeline.keep_up(self.sim.ticks() * TICK_US);
         self.vitals
             .slowed_us
             .store(self.timeline.slowed_us(), Ordering::Relaxed);
@@ -165,11 +174,12 @@ impl Worker {
                 self.sim.feed(frame);
             }
             steps += self.sim.tick().erosion_steps;
+            self.changed = true;
         }
         self.steps += u64::from(steps);
         #[cfg(test)]
         assert!(!std::mem::take(&mut self.fault), "injected");
-        if restarted || self.sim.ticks() > first_tick {
+        if self.changed {
             self.publish();
         }
         if self.sim.ticks() >= self.good.ticks() + CHECKPOINT_TICKS {
@@ -197,6 +207,7 @@ impl Worker {
         slot.frame.panics = self.panics;
         slot.frame.steps = self.steps;
         self.frames.publish();
+        self.changed = false;
     }
 
     /// A session afresh. Where a land cannot be made the one that the session began with comes back.
@@ -215,6 +226,7 @@ impl Worker {
             self.chart.move_to(&world);
         }
         self.first = world;
+        self.changed = true;
     }
 
     /// After a panic: the last good moment comes back, without contacts. If that panics again within a second, its land
@@ -235,6 +247,7 @@ impl Worker {
         self.ring.cancel_contacts(tick * TICK_US);
         // The panic may have come while the chart was half-way to another land.
         self.chart.move_to(self.sim.world());
+        self.changed = true;
     }
 }
 

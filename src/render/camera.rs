@@ -221,7 +221,7 @@ fn plan_scale(extent: Extent, viewport_px: DVec2) -> f64 {
 
 /// The same direction between half a turn to the left and half a turn to the right, so that an eye never goes the
 /// long way round.
-fn turned(azimuth: f64) -> f64 {
+pub(super) fn turned(azimuth: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     (azimuth + PI).rem_euclid(TAU) - PI
 }
@@ -251,7 +251,7 @@ mod tests {
     fn the_plan_fills_the_window_with_north_up() {
         let camera = Camera::plan(LAND, WINDOW);
         let (corner, size) = plan_rect(LAND, WINDOW);
-        for height in [-1.0 * KM, 0.0, 4.0 * KM] {
+        for height in [-KM, 0.0, 4.0 * KM] {
             let north_west = camera
                 .project(DVec3::new(0.0, LAND.height, height))
                 .expect("seen");

@@ -5,11 +5,11 @@ use wgpu::util::DeviceExt as _;
 
 use super::camera::{Camera, plan_rect};
 use super::growth::Growth;
-use super::layout::{Air, View};
+use super::layout::{Air, RINGS, View};
 use super::passes::{self, Pipelines, Sheet, group};
 use super::quality::RenderQuality;
 use crate::gpu::Gpu;
-use crate::picture::colour::linear;
+use crate::picture::colour::{linear, smoothstep};
 use crate::picture::cover::Palette;
 use crate::surface::Surface;
 use crate::units::Extent;
@@ -17,7 +17,8 @@ use crate::units::Extent;
 /// How the land is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandStyle {
-    /// Heights are multiplied by this, 1 to 5. To be printed wherever it is not 1.
+    /// Heights are multiplied by this in the oblique view, 1 to 5. The plan is never exaggerated; on the way from one
+    /// to the other heights grow ([`LandStyle::drawn_exaggeration`]). To be printed wherever it is not 1.
     pub exaggeration: f32,
     /// How thick the air is: 0 none, 1 as usual.
     pub haze: f32,
@@ -28,26 +29,40 @@ pub struct LandStyle {
 impl Default for LandStyle {
     fn default() -> Self {
         Self {
-            exaggeration: 1.0,
+            exaggeration: 1.8,
             haze: 1.0,
             lamp: 1.0,
         }
     }
 }
 
+impl LandStyle {
+    /// How many times as high heights are drawn when the camera has so much tilt ([`Camera::tilt`]).
+    pub fn drawn_exaggeration(&self, tilt: f64) -> f64 {
+        1.0 + (f64::from(self.exaggeration) - 1.0) * tilt
+    }
+}
+
 /// Colours of air and room, `0xRRGGBB`.
 mod colours {
-    /// Mist at the foot of far mountains.
-    pub(super) const DISTANCE: u32 = 0x9f_b4cb;
+    /// Mist over low land.
+    pub(super) const MIST: u32 = 0xb9_b3c0;
+    /// The blue of distance.
+    pub(super) const DISTANCE: u32 = 0x6f_8fbe;
     /// The sky low towards the sun.
-    pub(super) const GLOW: u32 = 0xf3_d9b4;
+    pub(super) const GLOW: u32 = 0xff_c585;
     /// The sky low elsewhere.
-    pub(super) const HORIZON: u32 = 0xc3_cede;
+    pub(super) const HORIZON: u32 = 0xc7_b3bf;
+    /// The sky above that.
+    pub(super) const MIDDLE: u32 = 0x86_a3d0;
     /// The sky overhead.
-    pub(super) const ZENITH: u32 = 0x4d_74a8;
+    pub(super) const ZENITH: u32 = 0x2f_5190;
     /// The dark of the room around the plan.
     pub(super) const TABLE: u32 = 0x14_1618;
 }
+
+/// Tilt at which it is evening: the way down from the plan begins at noon.
+const DUSK: f32 = 0.6;
 
 /// Draws one land.
 pub struct LandRenderer {
@@ -79,9 +94,11 @@ impl LandRenderer {
         let rgb = |hex: u32| linear(hex).extend(1.0).to_array();
         let air = Air {
             valley: Palette::new(0.0).haze.extend(1.0).to_array(),
+            mist: rgb(colours::MIST),
             distance: rgb(colours::DISTANCE),
             glow: rgb(colours::GLOW),
             horizon: rgb(colours::HORIZON),
+            middle: rgb(colours::MIDDLE),
             zenith: rgb(colours::ZENITH),
             table: rgb(colours::TABLE),
         };
@@ -103,6 +120,8 @@ impl LandRenderer {
             }),
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("sheet"),
+                address_mode_u: wgpu::AddressMode::MirrorRepeat,
+                address_mode_v: wgpu::AddressMode::MirrorRepeat,
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 mipmap_filter: wgpu::MipmapFilterMode::Linear,
@@ -159,14 +178,8 @@ impl LandRenderer {
         let texels = (size * per_pixel).round();
         let texels = [texels.x, texels.y].map(|side| (side as u32).clamp(16, most));
         self.growth.exaggerate(style.exaggeration);
-        self.growth.step(
-            gpu,
-            &self.pipelines,
-            encoder,
-            texels,
-            dt_s,
-            tilted || per_pixel > 1.0,
-        );
+        self.growth
+            .step(gpu, &self.pipelines, encoder, texels, dt_s, tilted);
         let (lowland, summit) = self.growth.heights();
         let cells = self.mesh_cells();
         let (half_width, half_height) = camera.half_view();
@@ -181,13 +194,13 @@ impl LandRenderer {
             mesh: cells.map(|cells| cells as f32),
             plan: clip_rect(corner, size, viewport),
             tilt: camera.tilt() as f32,
-            exaggeration: style.exaggeration,
+            exaggeration: style.drawn_exaggeration(camera.tilt()) as f32,
             lowland,
             summit,
             haze: style.haze,
             lamp: style.lamp,
             encoded: f32::from(u8::from(self.encoded)),
-            distance: camera.eye().distance(camera.target()) as f32,
+            dusk: smoothstep(0.0, DUSK, camera.tilt() as f32),
         };
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         if tilted {
@@ -198,18 +211,21 @@ impl LandRenderer {
     }
 
     fn looks(&self, gpu: &Gpu, pipeline: &wgpu::RenderPipeline, bindings: &[u32]) -> Option<wgpu::BindGroup> {
-        let (sheet, stand) = self.growth.seen()?;
+        let seen = self.growth.seen()?;
+        let texture = wgpu::BindingResource::TextureView;
         let all = [
-            (0, self.view.as_entire_binding()),
-            (1, wgpu::BindingResource::Sampler(&self.sampler)),
-            (2, wgpu::BindingResource::TextureView(sheet)),
-            (3, wgpu::BindingResource::TextureView(stand)),
-            (4, self.air.as_entire_binding()),
+            (0, Some(self.view.as_entire_binding())),
+            (1, Some(wgpu::BindingResource::Sampler(&self.sampler))),
+            (2, Some(texture(seen.sheet))),
+            (3, Some(texture(seen.stand))),
+            (4, Some(self.air.as_entire_binding())),
+            (5, seen.evening.map(texture)),
         ];
         let entries: Vec<_> = all
             .into_iter()
             .filter(|(binding, _)| bindings.contains(binding))
-            .collect();
+            .map(|(binding, resource)| Some((binding, resource?)))
+            .collect::<Option<_>>()?;
         Some(group(&gpu.device, pipeline, &entries))
     }
 
@@ -269,7 +285,7 @@ impl LandRenderer {
         });
         let (Some(sky), Some(land)) = (
             self.looks(gpu, &self.pipelines.sky, &[0, 4]),
-            self.looks(gpu, &self.pipelines.terrain, &[0, 1, 2, 3, 4]),
+            self.looks(gpu, &self.pipelines.terrain, &[0, 1, 2, 3, 4, 5]),
         ) else {
             return;
         };
@@ -317,9 +333,9 @@ fn clip_rect(corner: DVec2, size: DVec2, viewport: DVec2) -> [f32; 4] {
 }
 
 impl Mesh {
-    /// Two triangles for each of `cells` and for the ring around them.
+    /// Two triangles for each of `cells` and for the rings around them.
     fn new(device: &wgpu::Device, cells: [u32; 2]) -> Self {
-        let [columns, rows] = cells.map(|cells| cells + 3);
+        let [columns, rows] = cells.map(|cells| cells + 1 + 2 * RINGS);
         let mut indices = Vec::with_capacity(6 * ((columns - 1) * (rows - 1)) as usize);
         for row in 0..rows - 1 {
             for column in 0..columns - 1 {

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::picture::light::SUN_ELEVATION;
+
 /// As `Ground` in `shaders/ground.wgsl`, which says what the fields mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -21,11 +23,9 @@ pub struct Ground {
     pub summit: f32,
     pub rim: f32,
     pub deepest: f32,
-    pub drainage_low: f32,
-    pub drainage_high: f32,
     pub ramp_low: f32,
     pub ramp_high: f32,
-    pub sun_elevation: f32,
+    pub aslant: f32,
 }
 
 /// As `View` in `shaders/land.wgsl`, which says what the fields mean.
@@ -48,7 +48,7 @@ pub struct View {
     pub haze: f32,
     pub lamp: f32,
     pub encoded: f32,
-    pub distance: f32,
+    pub dusk: f32,
 }
 
 /// As `Air` in `shaders/land.wgsl`: colours in linear light.
@@ -57,9 +57,11 @@ pub struct View {
 #[expect(missing_docs, reason = "the shader's own struct says it")]
 pub struct Air {
     pub valley: [f32; 4],
+    pub mist: [f32; 4],
     pub distance: [f32; 4],
     pub glow: [f32; 4],
     pub horizon: [f32; 4],
+    pub middle: [f32; 4],
     pub zenith: [f32; 4],
     pub table: [f32; 4],
 }
@@ -118,6 +120,12 @@ const MEADOW: f32 = 1400.0;
 /// Farthest that shadows and skies look, cells of the grid.
 const FARTHEST_LOOK: f64 = 110.0;
 
+/// Rows of vertices beyond each side of the land.
+pub(super) const RINGS: u32 = 22;
+/// Where the evening's sun stands, radians clockwise from north, and its height over the horizon, radians.
+pub(super) const EVENING_AZIMUTH: f64 = 290.0 / 180.0 * std::f64::consts::PI;
+const EVENING_ELEVATION: f64 = 0.27;
+
 /// Rows of the ramp texture.
 pub(super) const RAMP_ROWS: [&str; 9] = [
     "OPEN",
@@ -162,6 +170,19 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
     );
     constant("PENUMBRA_LOW", &float(f64::from(penumbra.0)));
     constant("PENUMBRA_HIGH", &float(f64::from(penumbra.1)));
+    let evening = [
+        ("EVENING_EAST", EVENING_AZIMUTH.sin()),
+        ("EVENING_NORTH", EVENING_AZIMUTH.cos()),
+        ("EVENING_SINE", EVENING_ELEVATION.sin()),
+        ("EVENING_COSINE", EVENING_ELEVATION.cos()),
+        ("EVENING_TANGENT", EVENING_ELEVATION.tan()),
+        ("SUN_SINE", f64::from(SUN_ELEVATION).sin()),
+        ("SUN_COSINE", f64::from(SUN_ELEVATION).cos()),
+        ("RINGS", f64::from(RINGS)),
+    ];
+    for (name, value) in evening {
+        constant(name, &float(value));
+    }
     constant("RAMPS", &float(RAMP_ROWS.len() as f64));
     for (row, name) in RAMP_ROWS.iter().enumerate() {
         constant(name, &float(row as f64));

@@ -7,6 +7,7 @@
 //! The colours are those of the printed map ([`crate::picture`]).
 
 mod camera;
+mod flight;
 mod growth;
 mod land;
 pub mod layout;
@@ -14,8 +15,10 @@ mod offscreen;
 mod passes;
 mod quality;
 mod upload;
+mod work;
 
 pub use camera::{Camera, Oblique, plan_rect};
+pub use flight::{Focus, flight};
 pub use land::{LandRenderer, LandStyle};
 pub use layout::LightQuality;
 pub use offscreen::picture;

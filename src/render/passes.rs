@@ -30,6 +30,7 @@ pub(super) struct Pipelines {
     pub(super) river: wgpu::RenderPipeline,
     pub(super) soak: wgpu::RenderPipeline,
     pub(super) sheet: wgpu::RenderPipeline,
+    pub(super) sheets: wgpu::RenderPipeline,
     pub(super) shrink: wgpu::RenderPipeline,
     pub(super) plan: wgpu::RenderPipeline,
     pub(super) sky: wgpu::RenderPipeline,
@@ -42,7 +43,7 @@ struct Recipe<'a> {
     module: &'a wgpu::ShaderModule,
     vertex: &'a str,
     fragment: &'a str,
-    targets: &'a [Option<wgpu::ColorTargetState>],
+    targets: &'a [wgpu::ColorTargetState],
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     strip: bool,
     depth: Option<wgpu::CompareFunction>,
@@ -118,6 +119,7 @@ impl Pipelines {
             .make(device),
             soak: onto("soak", &rivers, "soak", &[blended(RIVERS, BY_CONSTANT)]),
             sheet: onto("sheet", &sheet, "sheet", &[plain(SHEET)]),
+            sheets: onto("sheets", &sheet, "sheets", &[plain(SHEET), plain(SHEET)]),
             shrink: onto("shrink", &shrink, "shrink", &[plain(SHEET)]),
             plan: seen("plan", "plan_quad", "plan", None, 1),
             sky: seen(
@@ -140,6 +142,7 @@ impl Pipelines {
 
 impl Recipe<'_> {
     fn make(&self, device: &wgpu::Device) -> wgpu::RenderPipeline {
+        let targets: Vec<_> = self.targets.iter().cloned().map(Some).collect();
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.name),
             layout: None,
@@ -172,7 +175,7 @@ impl Recipe<'_> {
                 module: self.module,
                 entry_point: Some(self.fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: self.targets,
+                targets: &targets,
             }),
             multiview_mask: None,
             cache: None,
@@ -193,19 +196,19 @@ const BY_CONSTANT: wgpu::BlendComponent = wgpu::BlendComponent {
     operation: wgpu::BlendOperation::Add,
 };
 
-fn plain(format: wgpu::TextureFormat) -> Option<wgpu::ColorTargetState> {
-    Some(format.into())
+fn plain(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+    format.into()
 }
 
-fn blended(format: wgpu::TextureFormat, blend: wgpu::BlendComponent) -> Option<wgpu::ColorTargetState> {
-    Some(wgpu::ColorTargetState {
+fn blended(format: wgpu::TextureFormat, blend: wgpu::BlendComponent) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState {
         format,
         blend: Some(wgpu::BlendState {
             color: blend,
             alpha: blend,
         }),
         write_mask: wgpu::ColorWrites::ALL,
-    })
+    }
 }
 
 /// A texture to draw into and look at, and its whole view.

@@ -15,6 +15,13 @@ const MEADOWS: (f64, f64) = (60e6, 1500e6);
 /// Length over which a river grows to its width below its source, parts of the land's short side.
 const TAPER: f64 = 0.07;
 
+/// Heights, metres; `lowland` where there is none: a single one would spread over the land as it grows.
+pub(super) fn heights(metres: &[f32], lowland: f32, out: &mut Vec<f32>) {
+    out.clear();
+    let sound = |&height: &f32| if height.is_finite() { height } else { lowland };
+    out.extend(metres.iter().map(sound));
+}
+
 /// Lake depth and drainage of each cell as two bytes. Lakes take the root, so that shallow ones keep their shape.
 pub(super) fn water(surface: &Surface, out: &mut Vec<u8>) {
     out.clear();

@@ -125,7 +125,7 @@ impl Bound {
     fn in_words(&self) -> String {
         let kind = if self.whole { "a whole number" } else { "a number" };
         let unit = if self.unit == "1" { "" } else { self.unit };
-        let words = format!("{kind} in {}..={} {unit}", self.min, self.max);
+        let words = format!("{kind} from {} to {} {unit}", self.min, self.max);
         words.trim_end().to_owned()
     }
 }

@@ -16,13 +16,12 @@ impl Settings {
                 section = key.section;
                 let _ = write!(text, "\n[{section}]\n");
             }
+            let (help, expected) = (key.help, key.expected());
+            let value = literal(key, &(key.get)(self));
             let _ = write!(
                 text,
-                "\n# {} ({})\n{} = {}\n",
-                key.help,
-                key.expected(),
-                key.name,
-                literal(key, &(key.get)(self))
+                "\n# {help}\n# Expected: {expected}.\n{} = {value}\n",
+                key.name
             );
         }
         text
@@ -32,6 +31,8 @@ impl Settings {
 /// A value as TOML writes it.
 fn literal(key: &Key, value: &Value) -> String {
     match (value, key.domain) {
+        // Bounds keep numbers far from where floats lose units.
+        (Value::Number(number), _) if number.fract() == 0.0 => format!("{number:.0}"),
         (Value::Number(number), _) => toml::Value::Float(*number).to_string(),
         (Value::Word, Domain::NumberOr(_, word)) => format!("\"{word}\""),
         (Value::Word, _) => String::new(),

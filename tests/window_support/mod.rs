@@ -120,10 +120,7 @@ impl Table {
         fs::write(&settings, setup.settings).unwrap();
         let metrics = folder.join("metrics.jsonl");
         let program = display
-            .command(concat!(
-                env!("CARGO_MANIFEST_DIR"),
-                "/target/debug/examples/fake_table"
-            ))
+            .command(env!("CARGO_BIN_EXE_orogen"))
             .args(setup.arguments)
             .arg("--settings")
             .arg(&settings)

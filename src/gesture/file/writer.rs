@@ -7,9 +7,7 @@ use std::io::{self, Write};
 use super::header::Header;
 use super::reader::GestureFile;
 use crate::gesture::admission::Admission;
-use crate::gesture::contact::{
-    Contact, ContactEvent, ContactKey, InputFrame, MAX_COORDINATE_MM, Phase, quantise_mm,
-};
+use crate::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase};
 use crate::gesture::json::write_position;
 
 /// Writes a gesture file moment by moment, one `write` per line, so that a power cut tears at most the last one.
@@ -188,26 +186,19 @@ pub(super) fn write_time(out: &mut String, t_us: u64) {
 }
 
 fn write_touch(out: &mut String, id: u64, contact: &Contact) {
+    let contact = contact.as_recorded();
     let _ = write!(out, "[{id},");
     let mut at = String::new();
     write_position(&mut at, contact.position);
     // Without the brackets of a bare position.
     out.push_str(&at[1..at.len() - 1]);
-    let size = contact.size_mm.filter(|s| s.is_finite());
-    let size = size.map(|s| s.clamp(glam::DVec2::ZERO, glam::DVec2::splat(MAX_COORDINATE_MM)));
-    let confidence = contact.confidence.filter(|c| (0.0..=1.0).contains(c));
-    if size.is_some() || confidence.is_some() {
+    if contact.size_mm.is_some() || contact.confidence.is_some() {
         out.push_str(",{");
-        if let Some(size) = size {
-            let _ = write!(
-                out,
-                "\"w\":{:.2},\"h\":{:.2}",
-                quantise_mm(size.x),
-                quantise_mm(size.y)
-            );
+        if let Some(size) = contact.size_mm {
+            let _ = write!(out, "\"w\":{:.2},\"h\":{:.2}", size.x, size.y);
         }
-        if let Some(confidence) = confidence {
-            let separator = if size.is_some() { "," } else { "" };
+        if let Some(confidence) = contact.confidence {
+            let separator = if contact.size_mm.is_some() { "," } else { "" };
             let thousandths = (f64::from(confidence) * 1000.0).round() / 1000.0;
             let _ = write!(out, "{separator}\"conf\":{thousandths}");
         }
