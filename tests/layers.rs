@@ -119,6 +119,24 @@ const RULES: &[Rule] = &[
         reason: "sources know no world",
     },
     Rule {
+        module: "ui",
+        forbidden: &[
+            "winit",
+            "wgpu",
+            "crate::sim",
+            "crate::mountain",
+            "crate::terrain",
+            "crate::render",
+            "crate::gpu",
+            "crate::app",
+            "std::time",
+            "Instant::now",
+            "std::env",
+            "std::fs",
+        ],
+        reason: "what lies on the land is drawn from plain data",
+    },
+    Rule {
         module: "instrument",
         forbidden: &[
             "crate::mountain",
@@ -155,24 +173,6 @@ const RULES: &[Rule] = &[
             "crate::kiosk",
         ],
         reason: "settings are read by all and read nobody",
-    },
-    Rule {
-        module: "ui",
-        forbidden: &[
-            "winit",
-            "wgpu",
-            "crate::sim",
-            "crate::mountain",
-            "crate::terrain",
-            "crate::render",
-            "crate::gpu",
-            "crate::app",
-            "std::time",
-            "Instant::now",
-            "std::env",
-            "std::fs",
-        ],
-        reason: "what lies on the land is drawn from plain data",
     },
 ];
 

@@ -240,7 +240,11 @@ fn an_edit_is_undone_as_one_and_gives_the_plate_back() {
     play(&mut sim, frames, 1300);
     assert_ne!(sim.world().plates.plates()[0].motion, before);
     play(&mut sim, vec![command(1_400_000, Action::Undo)], 1450);
-    assert_eq!(sim.world().plates.plates()[0].motion, before, "all steps of one contact");
+    assert_eq!(
+        sim.world().plates.plates()[0].motion,
+        before,
+        "all steps of one contact"
+    );
     play(&mut sim, vec![command(1_500_000, Action::Remove { at })], 1550);
     assert!(sim.world().plates.plates().is_empty());
     play(&mut sim, vec![command(1_600_000, Action::Undo)], 1650);

@@ -8,11 +8,12 @@ use egui::{Color32, Context, LayerId, Painter, Pos2, RawInput, Rect, Shape, pos2
 use glam::DVec2;
 use orogen::gesture::contact::Side;
 use orogen::instrument::{EditView, Editing};
+use orogen::kiosk::{Hint, Lesson};
 use orogen::live::Clock;
 use orogen::surface::{FaultTrace, PlateMark, PlateState};
 use orogen::ui::ink::Chart;
 use orogen::ui::readouts::{self, Readings};
-use orogen::ui::{Sight, palette, warning};
+use orogen::ui::{Sight, ghost, palette, warning};
 use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
 
 const SCREEN: Rect = Rect::from_min_max(Pos2::ZERO, pos2(1920.0, 1080.0));
@@ -267,6 +268,26 @@ fn the_warning_counts_whole_seconds_for_both_sides() {
         assert_eq!(angles.len(), 2, "{told} is told twice");
         assert!((angles[0] - angles[1]).abs() > 3.0, "once for each side");
     }
+}
+
+#[test]
+fn ghosts_that_may_not_travel_stand_where_the_gesture_ends() {
+    let places = |progress: f64| {
+        let hint = Hint {
+            lesson: Lesson::TwoHands,
+            side: Side::South,
+            progress,
+        };
+        let shapes = shapes(|painter, sight| ghost::draw_still(painter, sight, &hint));
+        let rings = shapes.into_iter().filter_map(|shape| match shape {
+            Shape::Circle(circle) => Some((circle.center.x.to_bits(), circle.center.y.to_bits())),
+            _ => None,
+        });
+        rings.collect::<Vec<_>>()
+    };
+    assert!(places(0.0).is_empty() && places(1.0).is_empty());
+    assert!(places(0.3).len() >= 10, "a ring round each finger");
+    assert_eq!(places(0.3), places(0.7));
 }
 
 /// Colour vision without one kind of cone: Machado, Oliveira & Fernandes 2009, severity 1, on linear RGB.

@@ -66,6 +66,7 @@ impl Offscreen {
                 );
                 scene(context, screen);
             });
+            #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
             for (id, images) in output.textures_delta.set.drain() {
                 for image in images {
                     renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, &image);

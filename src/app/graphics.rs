@@ -219,7 +219,9 @@ impl Graphics {
     }
 
     fn take_textures(&mut self, delta: &mut egui::TexturesDelta) {
-        for (id, changes) in delta.set.drain() {
+        let mut all: Vec<_> = delta.set.drain().collect();
+        all.sort_by_key(|(id, _)| *id);
+        for (id, changes) in all {
             for change in changes {
                 self.overlay
                     .update_texture(&self.gpu.device, &self.gpu.queue, id, &change);
@@ -228,8 +230,10 @@ impl Graphics {
     }
 
     fn free_textures(&mut self, delta: &mut egui::TexturesDelta) {
-        for id in delta.free.drain() {
-            self.overlay.free_texture(&id);
+        let mut all: Vec<_> = delta.free.drain().collect();
+        all.sort_unstable();
+        for id in &all {
+            self.overlay.free_texture(id);
         }
     }
 

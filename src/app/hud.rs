@@ -8,7 +8,8 @@ use winit::event::KeyEvent;
 use super::graphics::Overlay;
 use super::keys;
 use super::metrics::Health;
-use super::table::{Place, Table};
+use super::table::Table;
+use super::told::Place;
 use crate::gesture::command::Tool;
 use crate::gesture::contact::{ContactKey, Phase as ContactPhase, Side};
 use crate::instrument::Route;
@@ -214,7 +215,7 @@ impl Hud {
         }
     }
 
-    fn draw(&self, context: &Context, table: &mut Table, settings: &Settings, rect: Rect, screen: Rect) {
+    fn draw(&self, context: &Context, table: &Table, settings: &Settings, rect: Rect, screen: Rect) {
         let painter = context.layer_painter(LayerId::background());
         let now_s = self.now_s;
         let (map, aloft) = (table.map(), table.aloft());
@@ -237,7 +238,11 @@ impl Hud {
         self.chart
             .draw(&painter, on_land, ink, editing.then_some(&edits[..]), now_s);
         if let Some(hint) = table.kiosk().hint() {
-            ghost::draw(&painter, &flat, &hint.hands(map.size_mm()));
+            if settings.view.reduced_motion {
+                ghost::draw_still(&painter, &flat, &hint);
+            } else {
+                ghost::draw(&painter, &flat, &hint.hands(map.size_mm()));
+            }
         }
         let quiet = (1.0 - aloft) as f32;
         if quiet > 0.0 && table.kiosk().phase() != Phase::Attract {
@@ -253,6 +258,10 @@ impl Hud {
         if let Phase::IdleWarning { left_ms } = table.kiosk().phase() {
             let whole_ms = (settings.kiosk.countdown_s * 1e3) as u64;
             warning::draw(&painter, &flat, screen, left_ms, whole_ms);
+        }
+        if let DoorPhase::Holding { progress } = table.door_phase() {
+            let corner = settings.staff.corner.position(map.size_mm());
+            staff::draw_hold(&painter, &flat, corner, progress);
         }
         if let Some(text) = table.notice() {
             notice(&painter, &flat, rect, text);

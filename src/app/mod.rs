@@ -11,7 +11,9 @@ mod keys;
 mod log;
 mod metrics;
 mod save;
+mod setup;
 mod table;
+mod told;
 mod watch;
 mod window;
 

@@ -4,39 +4,24 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::DVec2;
-use serde::Serialize;
 
-use super::graphics::Graphics;
-use super::metrics::Facts;
 use super::save::Saver;
+use super::setup::{door_params, grounded, instrument_params, nodes, raster_width, window_map};
 use super::{AppError, Options};
-use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase, Side};
-use crate::gesture::params::GestureParams;
-use crate::input::window::{TouchPhase, WindowInput, WindowMap};
-use crate::instrument::{ControlKind, Deed, Instrument, InstrumentParams, Key, Route, Scene};
-use crate::kiosk::{
-    DoorParams, DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor,
-};
+use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase};
+use crate::input::window::{TouchPhase, WindowInput};
+use crate::instrument::{Deed, Instrument, Key, Route, Scene};
+use crate::kiosk::{DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor};
 use crate::live::{Frame, Heartbeat, LiveParams, Session, Start};
-use crate::render::{Camera, Focus, LandStyle, flight, plan_rect};
+use crate::render::{Camera, Focus, LandStyle, flight};
 use crate::settings::Settings;
 use crate::sim::SimParams;
 use crate::units::PlanMap;
 
-/// Columns of the rasters that the session draws for the window.
-const COLUMNS: usize = 1024;
-/// The same where processor cores also draw the picture.
-const SOFTWARE_COLUMNS: usize = 640;
-/// Nodes of the land where the settings leave it to the program: on many cores, on few, and on few that also draw.
-const NODES: [usize; 3] = [60_000, 30_000, 15_000];
-/// From so many cores on there are many.
-const MANY_CORES: usize = 8;
 /// Time in which the room's light follows a reset, s.
 const EASE_S: f64 = 0.25;
 /// Time in which the eye follows a land that changes under it, s: slower than anybody notices.
 const FOLLOWS_S: f64 = 6.0;
-/// Where a fingertip is held in the staff's corner, mm from both edges.
-const FINGERTIP_MM: f64 = 12.0;
 /// How long touches do nothing while the table is wiped, µs.
 const CLEANING_US: u64 = 30_000_000;
 
@@ -94,18 +79,18 @@ macro_rules! with_scene {
 /// The table.
 pub(super) struct Table {
     unattended: bool,
-    map: PlanMap,
-    size_px: DVec2,
-    input: WindowInput,
-    instrument: Instrument,
-    kiosk: Kiosk,
+    pub(super) map: PlanMap,
+    pub(super) size_px: DVec2,
+    pub(super) input: WindowInput,
+    pub(super) instrument: Instrument,
+    pub(super) kiosk: Kiosk,
     show: Show,
     door: StaffDoor,
     flight: Flight,
     /// The flight on the ground, to begin anew with.
     grounded: Flight,
     wishes_fly: bool,
-    session: Session,
+    pub(super) session: Session,
     saver: Saver,
     /// Rectangles of panels, table mm.
     panels: Vec<(DVec2, DVec2)>,
@@ -117,17 +102,17 @@ pub(super) struct Table {
     camera: Camera,
     style: LandStyle,
     visitors: u64,
-    resets: u64,
+    pub(super) resets: u64,
     in_reset: bool,
-    control_presses: u64,
-    nodes: usize,
+    pub(super) control_presses: u64,
+    pub(super) nodes: usize,
     now_us: u64,
     cleaning_until_us: u64,
     /// When each contact that is down landed.
     since_us: BTreeMap<ContactKey, u64>,
     /// Pushes of the session when the phase began.
     pushes: u64,
-    layout_told: Option<(DVec2, bool)>,
+    pub(super) layout_told: Option<(DVec2, bool)>,
 }
 
 impl Table {
@@ -147,7 +132,7 @@ impl Table {
             nodes,
             seed: 1,
             sim: SimParams::default(),
-            raster_width: if software { SOFTWARE_COLUMNS } else { COLUMNS },
+            raster_width: raster_width(software),
             threads: 0,
         })
         .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
@@ -224,6 +209,11 @@ impl Table {
     /// The staff's door, to be drawn and to be typed at.
     pub(super) fn door(&mut self) -> &mut StaffDoor {
         &mut self.door
+    }
+
+    /// Where the staff's door is.
+    pub(super) fn door_phase(&self) -> DoorPhase {
+        self.door.phase()
     }
 
     /// How far the view is from the plan, 0–1.
@@ -541,175 +531,9 @@ impl Table {
             }
         }
     }
-
-    /// Figures of this second.
-    pub(super) fn facts(&self, graphics: &Graphics, scale: f32, devices_lost: u32) -> Facts {
-        let frame = self.frame();
-        let heights = &frame.surface.height.data;
-        let [width, height] = graphics.size_px();
-        let info = &graphics.gpu().info;
-        let window = self.input.counts();
-        Facts {
-            phase: phase_name(self.kiosk.phase()),
-            steps: frame.steps,
-            contacts: self.contacts(),
-            contacts_total: frame.contacts.total,
-            hands: frame.hands.len(),
-            pushes: frame.contacts.pushes,
-            taps: frame.contacts.taps,
-            ghosts_dropped: frame.contacts.dropped_ghosts,
-            ignored: frame.contacts.ignored + window.unknown,
-            dead_touches: frame.counts.dead_touches,
-            control_presses: self.control_presses,
-            resets: self.resets,
-            panics: frame.panics,
-            devices_lost: u64::from(devices_lost),
-            nodes: self.nodes,
-            scale,
-            elapsed_yr: frame.clock.elapsed_yr,
-            max_m: heights.iter().copied().fold(f32::NEG_INFINITY, f32::max),
-            min_m: heights.iter().copied().fold(f32::INFINITY, f32::min),
-            adapter: info.name.clone(),
-            backend: info.backend.to_string(),
-            width,
-            height,
-        }
-    }
-
-    /// Where controls are in the window, when that has changed since this was last asked: for whoever drives the
-    /// table from outside.
-    pub(super) fn layout_line(&mut self) -> Option<LayoutLine> {
-        let paused = self.frame().clock.paused;
-        if self.layout_told == Some((self.size_px, paused)) {
-            return None;
-        }
-        self.layout_told = Some((self.size_px, paused));
-        let (corner, size) = plan_rect(self.map.extent(), self.size_px);
-        let per_mm = size.x / self.map.size_mm().x;
-        let controls = self.instrument.controls();
-        let size_mm = self.map.size_mm();
-        let staff_corner = self.instrument.params().corner.position(size_mm);
-        // A fingertip inside the corner itself.
-        let staff = staff_corner + (size_mm / 2.0 - staff_corner).signum() * FINGERTIP_MM;
-        Some(LayoutLine {
-            controls: controls
-                .iter()
-                .map(|control| {
-                    let at = corner + control.centre_mm * per_mm;
-                    ControlPlace {
-                        id: format!("{}-{:?}", side_name(control.side), control.kind).to_lowercase(),
-                        side: side_name(control.side),
-                        kind: kind_name(control.kind),
-                        x_px: at.x,
-                        y_px: at.y,
-                        half_px: control.half_size_mm.y * per_mm,
-                    }
-                })
-                .collect(),
-            staff_corner: Place {
-                label: None,
-                x_px: (corner + staff * per_mm).x,
-                y_px: (corner + staff * per_mm).y,
-            },
-        })
-    }
-}
-
-/// Where controls are, as a line of metrics.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct LayoutLine {
-    controls: Vec<ControlPlace>,
-    staff_corner: Place,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct ControlPlace {
-    id: String,
-    side: &'static str,
-    kind: &'static str,
-    x_px: f64,
-    y_px: f64,
-    half_px: f64,
-}
-
-/// A place in the window, pixels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Place {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) label: Option<String>,
-    pub(super) x_px: f64,
-    pub(super) y_px: f64,
-}
-
-fn phase_name(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Attract => "attract",
-        Phase::Invite => "invite",
-        Phase::Play => "play",
-        Phase::IdleWarning { .. } => "idle_warning",
-        Phase::Reset => "reset",
-    }
-}
-
-fn side_name(side: Side) -> &'static str {
-    match side {
-        Side::North => "north",
-        Side::South => "south",
-    }
-}
-
-fn kind_name(kind: ControlKind) -> &'static str {
-    match kind {
-        ControlKind::Tool => "tool",
-        ControlKind::Undo => "undo",
-        ControlKind::PlayPause => "play_pause",
-        ControlKind::Speed => "speed",
-        ControlKind::Scrub => "scrub",
-        ControlKind::StartOver => "start_over",
-        ControlKind::Readouts => "readouts",
-        ControlKind::Save => "save",
-    }
 }
 
 /// Table time in the milliseconds of the circle.
 fn millis(now_us: u64) -> u64 {
     now_us / 1000
-}
-
-fn nodes(settings: &Settings, software: bool) -> usize {
-    let many = std::thread::available_parallelism().is_ok_and(|cores| cores.get() >= MANY_CORES);
-    let chosen = match (many, software) {
-        (true, _) => NODES[0],
-        (false, false) => NODES[1],
-        (false, true) => NODES[2],
-    };
-    settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
-}
-
-fn window_map(settings: &Settings, map: &PlanMap, size_px: DVec2) -> WindowMap {
-    let land_px = plan_rect(map.extent(), size_px);
-    WindowMap::new(size_px, land_px, map.size_mm(), settings.table.orientation)
-}
-
-fn instrument_params(settings: &Settings, size_mm: DVec2, unattended: bool) -> InstrumentParams {
-    InstrumentParams {
-        size_mm,
-        corner: settings.staff.corner,
-        unattended,
-        readouts: settings.view.readouts,
-        gesture: GestureParams::default(),
-    }
-}
-
-fn door_params(settings: &Settings, size_mm: DVec2) -> DoorParams {
-    DoorParams {
-        pin: settings.staff.pin.clone(),
-        corner: settings.staff.corner,
-        size_mm,
-    }
-}
-
-fn grounded(settings: &Settings) -> Flight {
-    let after_ms = (settings.kiosk.flight_after_s * 1e3) as u64;
-    Flight::new(after_ms, settings.view.reduced_motion)
 }

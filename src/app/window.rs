@@ -270,12 +270,8 @@ impl Open {
         let now_ms = now_us / 1000;
         let door = self.table.door();
         match action {
-            StaffAction::Digit(digit) => {
-                door.digit(digit, now_ms);
-                if door.typed() == settings.staff.pin.len() {
-                    door.enter(now_ms);
-                }
-            }
+            StaffAction::Digit(digit) => door.digit(digit, now_ms),
+            StaffAction::Enter => door.enter(now_ms),
             StaffAction::Erase => door.erase(now_ms),
             StaffAction::Leave => door.close(),
             StaffAction::Quit => return true,
@@ -425,13 +421,14 @@ impl ApplicationHandler for Program {
                     open.table.key(key, pressed, micros(now_s));
                 }
             }
-            WindowEvent::Focused(false) => open.table.cancel_all(micros(now_s)),
+            WindowEvent::Focused(false) | WindowEvent::ScaleFactorChanged { .. } => {
+                open.table.cancel_all(micros(now_s));
+            }
             WindowEvent::Resized(size) => {
                 open.graphics.resize(size.width, size.height);
                 let size_px = open.graphics.size_px();
                 open.table.resize(&self.settings, size_px, micros(now_s));
             }
-            WindowEvent::ScaleFactorChanged { .. } => open.table.cancel_all(micros(now_s)),
             WindowEvent::CloseRequested if !self.options.kiosk => events.exit(),
             WindowEvent::RedrawRequested => self.frame(events),
             _ => {}

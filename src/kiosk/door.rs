@@ -163,11 +163,6 @@ impl StaffDoor {
         }
     }
 
-    /// Digits typed.
-    pub fn typed(&self) -> usize {
-        self.typed.len()
-    }
-
     /// The last digit goes.
     pub fn erase(&mut self, now_ms: u64) {
         self.stir(now_ms);

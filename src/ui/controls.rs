@@ -133,9 +133,9 @@ impl<'a> Control<'a> {
         }
         let towards = if before { 1.0 } else { -1.0 };
         let away = Rot2::from_angle(self.turn) * vec2(0.0, towards);
-        let at = self.centre + away * self.pen.mm(radius + 2.0 + LABEL);
         let word = words::control(self.view.kind, self.view.on);
         let size = self.pen.mm(LABEL).max(SMALLEST);
+        let at = self.centre + away * (self.pen.mm(radius + 0.6) + size * 0.75);
         let half = lettering::width(self.pen.painter, word, size) / 2.0;
         // A bed like a long disc, as under figures.
         let bed = vec2(half + size * 0.6, size * 0.75);

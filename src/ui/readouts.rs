@@ -187,7 +187,7 @@ impl Strip<'_> {
         let width = lettering::width(painter, &cell.text, text_size);
         let widest = lettering::width(painter, cell.widest, size);
         self.letters(self.used, Align2::RIGHT_BOTTOM, &cell.text, text_size, colour);
-        self.used += width.max(widest) + self.pen.mm(6.5);
+        self.used += width.max(widest) + small * 0.95;
         let glyph = Glyph {
             pen: self.pen,
             centre: self.at(self.used, 0.0),
@@ -197,7 +197,7 @@ impl Strip<'_> {
             strength: 0.8 * self.shown,
         };
         icons::figure(glyph, cell.figure);
-        self.used += self.pen.mm(4.0);
+        self.used += small * 0.6;
     }
 
     /// A round number of kilometres, in four alternating parts.

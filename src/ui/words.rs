@@ -23,7 +23,7 @@ pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
         (ControlKind::PlayPause, false) => "play",
         (ControlKind::Speed, _) => "speed",
         (ControlKind::Scrub, _) => "time",
-        (ControlKind::StartOver, _) => "start over",
+        (ControlKind::StartOver, _) => "reset",
         (ControlKind::Readouts, _) => "figures",
         (ControlKind::Save, _) => "save",
     }

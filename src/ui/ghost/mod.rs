@@ -17,7 +17,7 @@ use super::ease;
 use super::palette::{BLUE_BLACK, LAMP, PAPER, VERMILION, faded};
 use super::pen::{Line, Pen, arc, aside};
 use super::sight::Sight;
-use crate::kiosk::GhostHand;
+use crate::kiosk::{GhostHand, Hint};
 
 /// Radius of the ring around a ghost's finger, mm.
 const RING: f32 = 11.0;
@@ -26,7 +26,7 @@ const RING: f32 = 11.0;
 const GROWN: f64 = 70.0;
 
 /// A lone hand's range stands so far before its fingers, mm.
-const AHEAD: f64 = 52.0;
+const AHEAD: f64 = 62.0;
 
 /// A motion shorter than this shows nothing, mm.
 const LEAST: f64 = 3.0;
@@ -42,6 +42,25 @@ pub fn draw(painter: &Painter, sight: &Sight<'_>, hands: &[GhostHand]) {
     for ghost in &hands {
         ghost.shadow(pen);
     }
+}
+
+/// Draws a lesson where nothing may travel: the hands stand where the gesture ends, and come and go.
+pub fn draw_still(painter: &Painter, sight: &Sight<'_>, hint: &Hint) {
+    /// Part of a lesson at which the hands have moved and still touch.
+    const MOVED: f64 = 0.76;
+    /// Part of a lesson in which they come, and in which they go.
+    const FADE: f64 = 0.22;
+    let moved = Hint {
+        progress: MOVED,
+        ..*hint
+    };
+    let came = ease::step(0.0, FADE, hint.progress);
+    let left = ease::step(1.0 - FADE, 1.0, hint.progress);
+    let mut hands = moved.hands(sight.map().size_mm());
+    for hand in &mut hands {
+        hand.opacity *= f64::from(came * (1.0 - left));
+    }
+    draw(painter, sight, &hands);
 }
 
 /// A hand whose places are places.

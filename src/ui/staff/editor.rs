@@ -120,7 +120,7 @@ impl StaffPanel {
         let mut put = None;
         ui.label(RichText::new(format!("New PIN: {typed}")).color(AMBER));
         let mut done = false;
-        keypad::pad(ui, 0.72 * scale, true, &mut |pressed| match pressed {
+        keypad::pad(ui, 0.72 * scale, &mut |pressed| match pressed {
             Pressed::Digit(digit) if typed.len() < PIN_DIGITS.1 => typed.push(char::from(b'0' + digit % 10)),
             Pressed::Digit(_) => {}
             Pressed::Erase => {

@@ -45,11 +45,12 @@ pub(super) fn show(ui: &mut Ui, state: State, scale: f32, actions: &mut Vec<Staf
         dots(ui, digits, scale);
     });
     ui.add_enabled_ui(matches!(state, State::Open { .. }), |ui| {
-        // The door knows when a PIN is complete: nobody has to say so.
-        pad(ui, scale, false, &mut |key| match key {
-            Key::Digit(digit) => actions.push(StaffAction::Digit(digit)),
-            Key::Erase => actions.push(StaffAction::Erase),
-            Key::Enter => {}
+        pad(ui, scale, &mut |key| {
+            actions.push(match key {
+                Key::Digit(digit) => StaffAction::Digit(digit),
+                Key::Erase => StaffAction::Erase,
+                Key::Enter => StaffAction::Enter,
+            });
         });
     });
     if ui
@@ -71,8 +72,8 @@ pub(super) enum Key {
     Enter,
 }
 
-/// The keys, with or without [`Key::Enter`]; `press` is told each that is pressed.
-pub(super) fn pad(ui: &mut Ui, scale: f32, enter: bool, press: &mut dyn FnMut(Key)) {
+/// The twelve keys; `press` is told each that is pressed.
+pub(super) fn pad(ui: &mut Ui, scale: f32, press: &mut dyn FnMut(Key)) {
     let size = vec2(KEY, KEY * 0.86) * scale;
     let rows = [
         [1, 2, 3].map(Key::Digit),
@@ -82,7 +83,7 @@ pub(super) fn pad(ui: &mut Ui, scale: f32, enter: bool, press: &mut dyn FnMut(Ke
     ];
     for row in rows {
         ui.horizontal(|ui| {
-            for key in row.into_iter().filter(|&key| enter || key != Key::Enter) {
+            for key in row {
                 let text = match key {
                     Key::Digit(digit) => RichText::new(digit.to_string()).size(26.0 * scale),
                     Key::Erase => RichText::new("Erase"),

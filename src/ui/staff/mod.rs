@@ -34,6 +34,8 @@ pub enum StaffAction {
     Digit(u8),
     /// The last digit goes.
     Erase,
+    /// The PIN is complete.
+    Enter,
     /// The panel closes.
     Leave,
     /// The program ends.

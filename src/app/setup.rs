@@ -1,0 +1,68 @@
+//! What the settings mean to the parts of the table.
+
+use glam::DVec2;
+
+use crate::gesture::params::GestureParams;
+use crate::input::window::WindowMap;
+use crate::instrument::InstrumentParams;
+use crate::kiosk::{DoorParams, Flight};
+use crate::render::plan_rect;
+use crate::settings::Settings;
+use crate::units::PlanMap;
+
+/// Columns of the rasters that the session draws for the window.
+const COLUMNS: usize = 1024;
+/// The same where processor cores also draw the picture.
+const SOFTWARE_COLUMNS: usize = 640;
+/// Nodes of the land where the settings leave it to the program: on many cores, on few, and on few that also draw.
+const NODES: [usize; 3] = [60_000, 30_000, 15_000];
+/// From so many cores on there are many.
+const MANY_CORES: usize = 8;
+
+/// Columns of the rasters that the session draws.
+pub(super) fn raster_width(software: bool) -> usize {
+    if software { SOFTWARE_COLUMNS } else { COLUMNS }
+}
+
+/// Nodes of the land.
+pub(super) fn nodes(settings: &Settings, software: bool) -> usize {
+    let many = std::thread::available_parallelism().is_ok_and(|cores| cores.get() >= MANY_CORES);
+    let chosen = match (many, software) {
+        (true, _) => NODES[0],
+        (false, false) => NODES[1],
+        (false, true) => NODES[2],
+    };
+    settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
+}
+
+/// How the window's pixels lie on the table.
+pub(super) fn window_map(settings: &Settings, map: &PlanMap, size_px: DVec2) -> WindowMap {
+    let land_px = plan_rect(map.extent(), size_px);
+    WindowMap::new(size_px, land_px, map.size_mm(), settings.table.orientation)
+}
+
+/// What the instrument is made for.
+pub(super) fn instrument_params(settings: &Settings, size_mm: DVec2, unattended: bool) -> InstrumentParams {
+    InstrumentParams {
+        size_mm,
+        corner: settings.staff.corner,
+        unattended,
+        readouts: settings.view.readouts,
+        gesture: GestureParams::default(),
+    }
+}
+
+/// What the staff's door is made for.
+pub(super) fn door_params(settings: &Settings, size_mm: DVec2) -> DoorParams {
+    DoorParams {
+        pin: settings.staff.pin.clone(),
+        corner: settings.staff.corner,
+        size_mm,
+    }
+}
+
+/// A flight that has not begun.
+pub(super) fn grounded(settings: &Settings) -> Flight {
+    let after_ms = (settings.kiosk.flight_after_s * 1e3) as u64;
+    Flight::new(after_ms, settings.view.reduced_motion)
+}

@@ -1,0 +1,144 @@
+//! What the table tells of itself: figures each second, and where its controls are.
+
+use serde::Serialize;
+
+use super::graphics::Graphics;
+use super::metrics::Facts;
+use super::table::Table;
+use crate::gesture::contact::Side;
+use crate::instrument::ControlKind;
+use crate::kiosk::Phase;
+use crate::render::plan_rect;
+
+/// Where a fingertip is held in the staff's corner, mm from both edges.
+const FINGERTIP_MM: f64 = 12.0;
+
+impl Table {
+    /// Figures of this second.
+    pub(super) fn facts(&self, graphics: &Graphics, scale: f32, devices_lost: u32) -> Facts {
+        let frame = self.frame();
+        let heights = &frame.surface.height.data;
+        let [width, height] = graphics.size_px();
+        let info = &graphics.gpu().info;
+        let window = self.input.counts();
+        Facts {
+            phase: phase_name(self.kiosk.phase()),
+            steps: frame.steps,
+            contacts: self.contacts(),
+            contacts_total: frame.contacts.total,
+            hands: frame.hands.len(),
+            pushes: frame.contacts.pushes,
+            taps: frame.contacts.taps,
+            ghosts_dropped: frame.contacts.dropped_ghosts,
+            ignored: frame.contacts.ignored + window.unknown,
+            dead_touches: frame.counts.dead_touches,
+            control_presses: self.control_presses,
+            resets: self.resets,
+            panics: frame.panics,
+            devices_lost: u64::from(devices_lost),
+            nodes: self.nodes,
+            scale,
+            elapsed_yr: frame.clock.elapsed_yr,
+            max_m: heights.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+            min_m: heights.iter().copied().fold(f32::INFINITY, f32::min),
+            adapter: info.name.clone(),
+            backend: info.backend.to_string(),
+            width,
+            height,
+        }
+    }
+
+    /// Where controls are in the window, when that has changed since this was last asked: for whoever drives the
+    /// table from outside.
+    pub(super) fn layout_line(&mut self) -> Option<LayoutLine> {
+        let paused = self.frame().clock.paused;
+        if self.layout_told == Some((self.size_px, paused)) {
+            return None;
+        }
+        self.layout_told = Some((self.size_px, paused));
+        let (corner, size) = plan_rect(self.map.extent(), self.size_px);
+        let per_mm = size.x / self.map.size_mm().x;
+        let controls = self.instrument.controls();
+        let size_mm = self.map.size_mm();
+        let staff_corner = self.instrument.params().corner.position(size_mm);
+        // A fingertip inside the corner itself.
+        let staff = staff_corner + (size_mm / 2.0 - staff_corner).signum() * FINGERTIP_MM;
+        Some(LayoutLine {
+            controls: controls
+                .iter()
+                .map(|control| {
+                    let at = corner + control.centre_mm * per_mm;
+                    ControlPlace {
+                        id: format!("{}-{:?}", side_name(control.side), control.kind).to_lowercase(),
+                        side: side_name(control.side),
+                        kind: kind_name(control.kind),
+                        x_px: at.x,
+                        y_px: at.y,
+                        half_px: control.half_size_mm.y * per_mm,
+                    }
+                })
+                .collect(),
+            staff_corner: Place {
+                label: None,
+                x_px: (corner + staff * per_mm).x,
+                y_px: (corner + staff * per_mm).y,
+            },
+        })
+    }
+}
+
+/// Where controls are, as a line of metrics.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LayoutLine {
+    controls: Vec<ControlPlace>,
+    staff_corner: Place,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ControlPlace {
+    id: String,
+    side: &'static str,
+    kind: &'static str,
+    x_px: f64,
+    y_px: f64,
+    half_px: f64,
+}
+
+/// A place in the window, pixels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Place {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) label: Option<String>,
+    pub(super) x_px: f64,
+    pub(super) y_px: f64,
+}
+
+fn phase_name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Attract => "attract",
+        Phase::Invite => "invite",
+        Phase::Play => "play",
+        Phase::IdleWarning { .. } => "idle_warning",
+        Phase::Reset => "reset",
+    }
+}
+
+fn side_name(side: Side) -> &'static str {
+    match side {
+        Side::North => "north",
+        Side::South => "south",
+    }
+}
+
+fn kind_name(kind: ControlKind) -> &'static str {
+    match kind {
+        ControlKind::Tool => "tool",
+        ControlKind::Undo => "undo",
+        ControlKind::PlayPause => "play_pause",
+        ControlKind::Speed => "speed",
+        ControlKind::Scrub => "scrub",
+        ControlKind::StartOver => "start_over",
+        ControlKind::Readouts => "readouts",
+        ControlKind::Save => "save",
+    }
+}
