@@ -10,17 +10,14 @@ use std::fs;
 use window_support::fingers::{Script, gesture};
 use window_support::metrics::{Metrics, WHOLE_SECOND};
 use window_support::picture::Picture;
-use window_support::{Key, Setup, Table};
+use window_support::{Key, SLOW_S, Setup, Table};
 
 /// Mean difference of pixels that a visitor sees without looking for it, 0–255.
 const SEEN: f64 = 6.0;
 
-/// Mean difference of pixels that nobody sees.
-const UNSEEN: f64 = 2.0;
-
 #[test]
 fn two_hands_raise_a_range() {
-    let Some(mut table) = Table::in_play("two_hands_raise_a_range", &Setup::default()) else {
+    let Some(mut table) = Table::fresh("two_hands_raise_a_range", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -32,12 +29,14 @@ fn two_hands_raise_a_range() {
     hands.hand(0.0, 2.0, west, towards_east);
     hands.hand(0.0, 2.0, east, towards_west);
     table.play(&hands);
-    table.wait("the range rises under the fingers", 10.0, |now| {
+    table.wait("the range rises under the fingers", SLOW_S, |now| {
         (now.contacts, now.hands) == (10, 2) && now.max_m > start.max_m + 100.0
     });
     table.play(&Script::lifting(10));
-    let end = table.wait("a range of 600 m", 20.0, |now| now.max_m > start.max_m + 600.0);
-    assert_eq!((end.pushes - start.pushes, end.contacts), (2, 0));
+    let end = table.wait("a range of 600 m", SLOW_S, |now| {
+        now.contacts == 0 && now.max_m > start.max_m + 600.0
+    });
+    assert_eq!(end.pushes - start.pushes, 2);
 
     let after = table.look("after");
     let risen_land = table.save();
@@ -49,28 +48,35 @@ fn two_hands_raise_a_range() {
         highest > start.max_m + 400.0,
         "the report's highest point: {highest:.0} m"
     );
-    let changed = after.difference(&picture, between, 60);
+    // Rivers and lakes change everywhere while the land is young; the range has to stand out.
+    let far = [
+        (0.1, 0.25),
+        (0.1, 0.75),
+        (0.3, 0.9),
+        (0.7, 0.9),
+        (0.9, 0.25),
+        (0.9, 0.75),
+    ];
+    let far = far.map(|(x, y)| table.at(x, y));
+    let mut elsewhere = far.map(|at| after.difference(&picture, at, 50));
+    elsewhere.sort_by(f64::total_cmp);
+    let changed = after.difference(&picture, between, 50);
     assert!(
-        changed > 2.0 * SEEN,
-        "between the hands the picture changed by {changed:.1}"
+        changed > 2.0 * SEEN && changed > 2.0 * elsewhere[2],
+        "between the hands the picture changed by {changed:.1}, elsewhere by {elsewhere:.1?}"
     );
-    for far in [table.at(0.06, 0.3), table.at(0.06, 0.7)] {
-        let risen = risen_land.changed(&land, far, 30.0);
+    for at in far {
+        let risen = risen_land.risen(&land, at, 50.0);
         assert!(
             risen < 100.0,
-            "far from the hands the land changed by {risen:.0} m at {far:?}"
-        );
-        let changed = after.difference(&picture, far, 30);
-        assert!(
-            changed < UNSEEN,
-            "far from the hands the picture changed by {changed:.1} at {far:?}"
+            "far from the hands the land rose by {risen:.0} m at {at:?}"
         );
     }
 }
 
 #[test]
 fn four_visitors_sculpt_at_once() {
-    let Some(mut table) = Table::in_play("four_visitors_sculpt_at_once", &Setup::default()) else {
+    let Some(mut table) = Table::fresh("four_visitors_sculpt_at_once", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -88,11 +94,11 @@ fn four_visitors_sculpt_at_once() {
         hands.hand(0.1 * visitor as f64, 2.0, from, to);
     }
     table.play(&hands);
-    table.wait("twenty fingers of four hands", 5.0, |now| {
+    table.wait("twenty fingers of four hands", SLOW_S, |now| {
         (now.contacts, now.hands) == (20, 4)
     });
     table.play(&Script::lifting(20));
-    let end = table.wait("high land", 20.0, |now| now.max_m > start.max_m + 400.0);
+    let end = table.wait("high land", SLOW_S, |now| now.max_m > start.max_m + 400.0);
     assert_eq!(
         (end.pushes - start.pushes, end.dead_touches),
         (4, start.dead_touches)
@@ -110,7 +116,7 @@ fn four_visitors_sculpt_at_once() {
 
 #[test]
 fn taps_between_two_frames_are_kept() {
-    let Some(mut table) = Table::in_play("taps_between_two_frames_are_kept", &Setup::default()) else {
+    let Some(mut table) = Table::fresh("taps_between_two_frames_are_kept", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -132,7 +138,7 @@ fn taps_between_two_frames_are_kept() {
 
 #[test]
 fn a_finger_on_a_control_does_not_sculpt() {
-    let Some(mut table) = Table::in_play("a_finger_on_a_control_does_not_sculpt", &Setup::default()) else {
+    let Some(mut table) = Table::fresh("a_finger_on_a_control_does_not_sculpt", &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -145,7 +151,9 @@ fn a_finger_on_a_control_does_not_sculpt() {
     both.tap(0.5, 0.2, at);
     both.tap(1.3, 0.2, at);
     table.play(&both);
-    let end = table.wait("the range", 15.0, |now| now.max_m > start.max_m + 200.0);
+    let end = table.wait("the range", SLOW_S, |now| {
+        now.contacts == 0 && now.max_m > start.max_m + 200.0
+    });
     assert_eq!(end.control_presses - start.control_presses, 2, "{control:?}");
     let land_only = (
         end.contacts_total - start.contacts_total,
@@ -160,13 +168,13 @@ fn a_finger_on_a_control_does_not_sculpt() {
         risen > 100.0,
         "before the other finger the land rose by {risen:.0} m"
     );
-    let under = risen_land.changed(&land, at, 40.0);
-    assert!(under < 30.0, "under the control the land changed by {under:.0} m");
+    let under = risen_land.risen(&land, at, 40.0);
+    assert!(under < 30.0, "under the control the land rose by {under:.0} m");
 }
 
 #[test]
 fn an_unplugged_touchscreen_leaves_no_finger_behind() {
-    let Some(mut table) = Table::in_play(
+    let Some(mut table) = Table::fresh(
         "an_unplugged_touchscreen_leaves_no_finger_behind",
         &Setup::default(),
     ) else {
@@ -176,9 +184,9 @@ fn an_unplugged_touchscreen_leaves_no_finger_behind() {
     let mut hand = Script::default();
     hand.hand(0.0, 1.0, from, to);
     table.play(&hand);
-    table.wait("five fingers", 5.0, |now| now.contacts == 5);
+    table.wait("five fingers", SLOW_S, |now| now.contacts == 5);
     table.unplug();
-    table.wait("no finger", 5.0, |now| now.contacts == 0);
+    table.wait("no finger", SLOW_S, |now| now.contacts == 0);
     table.replug();
     let start = table.settled();
     let land = table.save();
@@ -195,7 +203,7 @@ fn an_unplugged_touchscreen_leaves_no_finger_behind() {
 /// Plays gesture files one after the other. Each has to be seen where its file says that the land changes, and the
 /// land has to be another there.
 fn answers(test: &str, names: &[&str]) {
-    let Some(mut table) = Table::in_play(test, &Setup::default()) else {
+    let Some(mut table) = Table::fresh(test, &Setup::default()) else {
         return;
     };
     let start = table.settled();
@@ -267,7 +275,7 @@ fn the_mouse_is_a_finger_and_alt_f4_closes_a_window() {
         arguments: &["--windowed", "--size", "960x540"],
         ..Setup::default()
     };
-    let Some(mut table) = Table::in_play("the_mouse_is_a_finger_and_alt_f4_closes_a_window", &setup) else {
+    let Some(mut table) = Table::fresh("the_mouse_is_a_finger_and_alt_f4_closes_a_window", &setup) else {
         return;
     };
     let start = table.settled();
@@ -275,8 +283,10 @@ fn the_mouse_is_a_finger_and_alt_f4_closes_a_window() {
     let land = table.save();
     let (from, to) = (table.at(0.3, 0.5), table.at(0.5, 0.5));
     table.drag(from, to, 1.5);
-    let end = table.wait("the range", 15.0, |now| now.max_m > start.max_m + 200.0);
-    assert_eq!((end.contacts, end.pushes - start.pushes), (0, 1));
+    let end = table.wait("the range", SLOW_S, |now| {
+        now.contacts == 0 && now.max_m > start.max_m + 200.0
+    });
+    assert_eq!(end.pushes - start.pushes, 1);
     let risen = table.save().risen(&land, (to.0 + 15.0, to.1), 40.0);
     assert!(risen > 100.0, "before the mouse the land rose by {risen:.0} m");
     table.press(&[Key::R], 0.3);
@@ -285,8 +295,7 @@ fn the_mouse_is_a_finger_and_alt_f4_closes_a_window() {
         kept.max_m >= end.max_m,
         "R was not held, yet the land is another: {kept:?}"
     );
-    table.press(&[Key::R], 2.0);
-    table.wait("fresh land", 5.0, |now| now.max_m < start.max_m + 100.0);
+    table.start_over();
     table.press(&[Key::Alt, Key::F4], 0.1);
     assert_eq!(table.ended(10.0).code(), Some(0));
 }
@@ -298,7 +307,7 @@ fn a_window_changes_its_size_and_escape_closes_it() {
         arguments: &["--windowed", "--size", "960x540"],
         ..Setup::default()
     };
-    let Some(mut table) = Table::in_play("a_window_changes_its_size_and_escape_closes_it", &setup) else {
+    let Some(mut table) = Table::fresh("a_window_changes_its_size_and_escape_closes_it", &setup) else {
         return;
     };
     let whole: serde_json::Value = serde_json::from_str(&table.metrics.last_line()).unwrap();
@@ -306,7 +315,9 @@ fn a_window_changes_its_size_and_escape_closes_it() {
         assert!(whole.get(field).is_some(), "no `{field}` in {whole}");
     }
     table.press(&[Key::F11], 0.05);
-    table.wait("full screen", 10.0, |now| (now.width, now.height) == (1440, 810));
+    table.wait("full screen", SLOW_S, |now| {
+        (now.width, now.height) == (1440, 810)
+    });
     table.find_window();
     let start = table.settled();
     let land = table.save();
@@ -314,14 +325,16 @@ fn a_window_changes_its_size_and_escape_closes_it() {
     let mut finger = Script::default();
     finger.stroke(0.0, 1.5, from, to);
     table.play(&finger);
-    table.wait("the range", 15.0, |now| now.max_m > start.max_m + 200.0);
+    table.wait("the range", SLOW_S, |now| {
+        now.contacts == 0 && now.max_m > start.max_m + 200.0
+    });
     let risen = table.save().risen(&land, (to.0, to.1 + 20.0), 60.0);
     assert!(
         risen > 100.0,
         "on the greater window the land rose by {risen:.0} m before the finger"
     );
     table.press(&[Key::F11], 0.05);
-    let end = table.wait("a window", 10.0, |now| (now.width, now.height) == (960, 540));
+    let end = table.wait("a window", SLOW_S, |now| (now.width, now.height) == (960, 540));
     assert!(
         end.max_m > start.max_m + 200.0 && end.panics == 0,
         "the land is kept: {end:?}"

@@ -12,6 +12,7 @@ use window_support::{Key, Setup, Table};
 /// A table that nobody uses for twenty seconds begins to count down from twenty.
 fn soon_idle() -> Setup<'static> {
     Setup {
+        arguments: &["kiosk"],
         settings: "[table]\nwidth_mm = 1209.6\n[kiosk]\nidle_s = 20\ncountdown_s = 20\n",
         ..Setup::default()
     }
