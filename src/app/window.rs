@@ -16,6 +16,7 @@ use winit::window::{Fullscreen, Window, WindowId};
 use super::governor::Governor;
 use super::graphics::{Graphics, Scene, Shown};
 use super::hud::Hud;
+use super::keeper;
 use super::keys;
 use super::metrics::Metrics;
 use super::table::{Raw, Table};
@@ -266,6 +267,7 @@ impl Open {
         if metrics.due(done_s) {
             let facts = self.table.facts(&self.graphics, self.scale, self.revivals);
             metrics.close(done_s, &facts);
+            keeper::alive();
         }
         self.next_frame_s = now_s + self.period_s(settings);
         Drawn::Yes
