@@ -38,6 +38,7 @@ const PLACE: f64 = 1.5;
 /// The card, for one test at a time: a software adapter uses all cores, and its device is not needed twice.
 static CARD: Mutex<()> = Mutex::new(());
 
+#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 fn card() -> Option<(Gpu, MutexGuard<'static, ()>)> {
     let turn = CARD.lock().unwrap_or_else(PoisonError::into_inner);
     match Gpu::offscreen() {

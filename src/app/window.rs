@@ -222,8 +222,7 @@ impl Open {
         let land = self.table.frame().land;
         if self.shown_land != Some(land) {
             let surface = &self.table.frame().surface;
-            self.graphics
-                .show(surface, surface.elapsed_yr < self.shown_yr);
+            self.graphics.show(surface, surface.elapsed_yr < self.shown_yr);
             self.shown_land = Some(land);
             self.shown_yr = surface.elapsed_yr;
         }

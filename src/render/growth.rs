@@ -16,6 +16,10 @@ const GROWTH_S: f32 = 0.12;
 const SETTLED_S: f32 = 0.9;
 
 /// The land on the graphics card.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a thing of its own that is not drawn yet"
+)]
 pub(super) struct Growth {
     quality: RenderQuality,
     ground: Ground,
