@@ -26,7 +26,7 @@
 //! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
 //! | [`input`] | recordings of other tools, maps from files | worlds |
 //! | [`report`] | the facts of a run | clock, files |
-//! | [`cli`] | the commands; the only place with a terminal | |
+//! | [`cli`] | the commands; beside `app` the only place with a clock and a terminal | |
 //!
 //! # What is absent
 //!

@@ -463,3 +463,25 @@ fn contacts_that_are_withdrawn_end_what_they_do() {
     assert_eq!(resumed.hands().count(), 0);
     assert_eq!(sim.hands().count(), 1, "the other one is another session");
 }
+
+#[test]
+fn looking_at_every_tick_changes_nothing() {
+    let (mut watched, mut alone) = (sim(800), sim(800));
+    // Rubbing: the plate is another at every tick, and what it was between two steps leaves no mark.
+    let rub = |step: u64| DVec2::new(600.0 + 60.0 * (step as f64 * 0.3).sin(), 340.0 + step as f64);
+    let mut frames = vec![frame(0, vec![event(Phase::Down, 1, rub(0))])];
+    frames.extend((1..150).map(|step| frame(step * 16, vec![event(Phase::Move, 1, rub(step))])));
+    for frame in frames {
+        watched.feed(frame.clone());
+        alone.feed(frame);
+    }
+    for _ in 0..200 {
+        watched.refresh_uplift();
+        watched.tick();
+        alone.tick();
+        assert!(watched.world().z == alone.world().z);
+        assert_eq!(watched.fault_traces(), alone.fault_traces());
+        assert_eq!(watched.node_uplift(), alone.node_uplift());
+    }
+    assert!(alone.world().plates.residues().len() > 1);
+}

@@ -131,5 +131,6 @@ proptest! {
             "the same input gives the same bits, whoever looks"
         );
         prop_assert_eq!(sim.counts(), again.counts());
+        prop_assert_eq!(sim.fault_traces(), again.fault_traces());
     }
 }

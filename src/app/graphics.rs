@@ -116,8 +116,11 @@ impl Graphics {
         self.land.set_scale(scale);
     }
 
-    /// Takes a new land over; it grows into the picture.
-    pub(super) fn show(&mut self, surface: &Surface) {
+    /// Takes a new land over; it grows into the picture. `leaps`: it is another one, not the last some years later.
+    pub(super) fn show(&mut self, surface: &Surface, leaps: bool) {
+        if leaps {
+            self.land.leap();
+        }
         self.land.show(&self.gpu, surface);
     }
 

@@ -7,6 +7,7 @@
 mod governor;
 mod graphics;
 mod hud;
+mod keeper;
 mod keys;
 mod log;
 mod metrics;

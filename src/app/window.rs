@@ -16,6 +16,7 @@ use winit::window::{Fullscreen, Window, WindowId};
 use super::governor::Governor;
 use super::graphics::{Graphics, Scene, Shown};
 use super::hud::Hud;
+use super::keeper;
 use super::keys;
 use super::metrics::Metrics;
 use super::table::{Raw, Table};
@@ -65,6 +66,8 @@ struct Open {
     next_frame_s: f64,
     last_frame_s: f64,
     shown_land: Option<u64>,
+    /// How old it was, years.
+    shown_yr: f64,
     revivals: u32,
     _watch: Watch,
 }
@@ -125,6 +128,7 @@ impl Program {
             next_frame_s: 0.0,
             last_frame_s: 0.0,
             shown_land: None,
+            shown_yr: 0.0,
             revivals: 0,
             _watch: watch,
         };
@@ -217,8 +221,10 @@ impl Open {
         let size_px = self.graphics.size_px();
         let land = self.table.frame().land;
         if self.shown_land != Some(land) {
-            self.graphics.show(&self.table.frame().surface);
+            let surface = &self.table.frame().surface;
+            self.graphics.show(surface, surface.elapsed_yr < self.shown_yr);
             self.shown_land = Some(land);
+            self.shown_yr = surface.elapsed_yr;
         }
         let run = self
             .hud
@@ -260,6 +266,7 @@ impl Open {
         if metrics.due(done_s) {
             let facts = self.table.facts(&self.graphics, self.scale, self.revivals);
             metrics.close(done_s, &facts);
+            keeper::alive();
         }
         self.next_frame_s = now_s + self.period_s(settings);
         Drawn::Yes

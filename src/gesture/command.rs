@@ -18,7 +18,7 @@
 //! | `layers` | a text of 1 to 64 characters | the rock layers become this preset |
 //! | `view` | `{"lon": degrees, "lat": degrees, "zoom": factor}` | the globe is looked at from there |
 //! | `earth` | `true` | the globe starts from Earth |
-//! | `scrub` | 0 to 1e9 | the clock is set to these years |
+//! | `scrub` | 0 to 1e9 | the land comes back as it was after these years, and the clock stops |
 //!
 //! Beside its word an object may name the `side` (`"north"`, `"south"`) and the `contact` (the id in the same file)
 //! it came from. Words, tools and modes that are not in the table belong to a newer program: they are ignored and
@@ -104,7 +104,7 @@ pub enum Action {
     },
     /// Start the globe from Earth.
     Earth,
-    /// Set the clock to a time in years, 0 to [`MAX_YEARS`].
+    /// Bring back the land as it was after these years, 0 to [`MAX_YEARS`], and stop the clock.
     Scrub(f64),
 }
 

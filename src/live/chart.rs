@@ -6,7 +6,7 @@ use super::frame::{Clock, Frame};
 use crate::gesture::contact::Side;
 use crate::sim::{Sim, World};
 use crate::surface::{Raster, Surface};
-use crate::survey::{Ground, Survey};
+use crate::survey::Survey;
 use crate::terrain::Flow;
 
 /// Pixels per task where each is independent of the others.
@@ -125,16 +125,16 @@ impl Chart {
     fn draw_land(&mut self, sim: &Sim) {
         // Until all is drawn, nothing is.
         self.revision = None;
-        let world = sim.world();
-        self.survey
-            .smooth(&world.tin, &world.z, &mut self.surface.height.data);
-        sim.route(&mut self.flow);
-        let ground = Ground {
-            tin: &world.tin,
-            z: &world.z,
-            flow: &self.flow,
-        };
-        self.survey.water(ground, &mut self.surface);
+        let (world, flow) = (sim.world(), &mut self.flow);
+        self.survey.draw(
+            &world.tin,
+            &world.z,
+            move || {
+                sim.route(flow);
+                flow
+            },
+            &mut self.surface,
+        );
         self.surface.spacing = world.tin.spacing();
         self.water += 1;
         self.revision = Some(sim.land_revision());

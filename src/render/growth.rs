@@ -16,6 +16,10 @@ const GROWTH_S: f32 = 0.12;
 const SETTLED_S: f32 = 0.9;
 
 /// The land on the graphics card.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a thing of its own that is not drawn yet"
+)]
 pub(super) struct Growth {
     quality: RenderQuality,
     ground: Ground,
@@ -33,6 +37,8 @@ pub(super) struct Growth {
     /// Nothing has been drawn of this grid yet: the first land does not grow, it is there.
     first: bool,
     since_s: f32,
+    /// The land on its way is another one.
+    leaps: bool,
     /// Once the heights as drawn are those of the newest land: parts of the light and colours that have not been
     /// computed from them yet.
     left: Option<u32>,
@@ -83,6 +89,7 @@ impl Growth {
             newer: 0,
             first: true,
             since_s: 0.0,
+            leaps: false,
             left: None,
             evening_is_old: true,
             strip: 0,
@@ -124,6 +131,12 @@ impl Growth {
         self.rivers_changed = true;
         self.since_s = 0.0;
         self.left = None;
+    }
+
+    /// The next land is another one, not this one some years later: until it is there it is drawn whole, never in strips
+    /// of which some show the one and some the other.
+    pub(super) fn leap(&mut self) {
+        self.leaps = true;
     }
 
     /// True when the land as drawn is the land as it is.
@@ -172,7 +185,7 @@ impl Growth {
         if self.grid.is_none() || (self.settled() && !new_size && !new_evening) {
             return;
         }
-        let whole = self.first || new_size || new_evening;
+        let whole = self.first || self.leaps || new_size || new_evening;
         self.since_s += dt_s;
         let arrived = self.first || self.since_s > SETTLED_S;
         let blend = if arrived {
@@ -247,6 +260,7 @@ impl Growth {
             work.halves(encoder);
         }
         self.first = false;
+        self.leaps &= !arrived;
     }
 }
 

@@ -145,6 +145,11 @@ impl LandRenderer {
         self.growth.show(gpu, surface);
     }
 
+    /// The land that is shown next is another one, not this one some years later (fresh, undone, looked back at).
+    pub fn leap(&mut self) {
+        self.growth.leap();
+    }
+
     /// Draws the land with so many texels per pixel along a side, 0.25 to 2.
     pub fn set_scale(&mut self, scale: f32) {
         self.scale = scale.clamp(0.25, 2.0);

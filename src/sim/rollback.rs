@@ -117,6 +117,20 @@ mod tests {
     }
 
     #[test]
+    fn input_does_not_pile_up_while_no_steps_are_taken() {
+        let mut rollback = Rollback::new();
+        rollback.checkpoint(-TICK, &-1);
+        for tick in 0..1000i64 {
+            rollback.record(&frame(tick as u64 * TICK_US));
+            if rollback.is_due(tick * TICK) {
+                rollback.checkpoint(tick * TICK, &tick);
+            }
+        }
+        assert!(rollback.frames.len() < 60, "{}", rollback.frames.len());
+        assert!(rollback.rewind(999 * TICK_US - 250_000).is_some());
+    }
+
+    #[test]
     fn the_very_first_contact_can_be_taken_back() {
         let mut rollback = Rollback::new();
         rollback.checkpoint(-TICK, &"start");

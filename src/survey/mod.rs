@@ -115,27 +115,40 @@ impl Survey {
         }
     }
 
-    /// Nodal values as pixels of a surface with continuous slopes, into `out`, which gets one value per pixel. `tin` is
-    /// the one the survey was made for.
-    pub fn smooth(&mut self, tin: &Tin, values: &[f64], out: &mut Vec<f32>) {
-        self.raster.smooth_into(tin, values, &mut self.sheet, out);
-    }
-
-    /// Draws the lakes, the drainage and the rivers of `ground` into `out`, a surface of this survey's size.
-    pub fn water(&mut self, ground: Ground<'_>, out: &mut Surface) {
-        self.water.read(ground);
-        self.raster
-            .linear_into(&self.water.lake_depth, &mut out.lake_depth.data);
-        self.raster
-            .linear_into(ground.flow.drainage(), &mut out.drainage.data);
-        out.rivers = rivers::drawn(self.water.graph(ground), DRAWN_RIVER_AREA);
+    /// Draws heights, lakes, drainage and rivers of the land `z` on `tin` into `out`, a surface of this survey's size.
+    /// `tin` is the one the survey was made for; `flow` routes the water over `z` meanwhile.
+    pub fn draw<'a>(
+        &mut self,
+        tin: &Tin,
+        z: &[f64],
+        flow: impl FnOnce() -> &'a Flow + Send,
+        out: &mut Surface,
+    ) {
+        let Self {
+            raster, sheet, water, ..
+        } = self;
+        let (height, lake_depth, drainage, rivers) = (
+            &mut out.height.data,
+            &mut out.lake_depth.data,
+            &mut out.drainage.data,
+            &mut out.rivers,
+        );
+        rayon::join(
+            || raster.smooth_into(tin, z, sheet, height),
+            || {
+                let ground = Ground { tin, z, flow: flow() };
+                water.read(ground);
+                raster.linear_into(&water.lake_depth, lake_depth);
+                raster.linear_into(ground.flow.drainage(), drainage);
+                *rivers = rivers::drawn(water.graph(ground), DRAWN_RIVER_AREA);
+            },
+        );
     }
 
     /// The surface of `ground` at `elapsed_yr`, with nothing standing on it.
     pub fn surface(&mut self, ground: Ground<'_>, elapsed_yr: f64) -> Surface {
         let mut surface = self.blank();
-        self.smooth(ground.tin, ground.z, &mut surface.height.data);
-        self.water(ground, &mut surface);
+        self.draw(ground.tin, ground.z, || ground.flow, &mut surface);
         surface.elapsed_yr = elapsed_yr;
         surface
     }
