@@ -56,7 +56,22 @@ impl Graphics {
     /// # Errors
     /// When there is none.
     pub(super) fn new(window: &Arc<Window>, display: &OwnedDisplayHandle) -> Result<Self, GpuError> {
-        let instance = crate::gpu::instance(Some(Box::new(display.clone())));
+        let mut found = Err(GpuError::NoAdapter("none was asked".to_owned()));
+        for interfaces in crate::gpu::INTERFACES {
+            found = Self::with(interfaces, window, display);
+            if found.is_ok() {
+                break;
+            }
+        }
+        found
+    }
+
+    fn with(
+        interfaces: wgpu::Backends,
+        window: &Arc<Window>,
+        display: &OwnedDisplayHandle,
+    ) -> Result<Self, GpuError> {
+        let instance = crate::gpu::instance(interfaces, Some(Box::new(display.clone())));
         let surface = instance
             .create_surface(Arc::clone(window))
             .map_err(|error| GpuError::Surface(error.to_string()))?;

@@ -6,8 +6,9 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Interfaces that are asked first, and the one that is asked if they have nothing.
-const BACKENDS: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
+/// Interfaces that are asked first (Vulkan or the system's own), and the one that is asked if they have nothing. Each
+/// has an instance of its own: GL is not even woken where it is not needed.
+pub const INTERFACES: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
 
 /// Devices made so far in this process.
 static GENERATIONS: AtomicU64 = AtomicU64::new(0);
@@ -46,13 +47,18 @@ pub struct Gpu {
     fault: Arc<Mutex<Option<String>>>,
 }
 
-/// An entry to all interfaces of this machine. GL can show pictures only on the `display` that is named here.
-pub fn instance(display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wgpu::Instance {
-    let descriptor = wgpu::InstanceDescriptor {
+/// An entry to some interfaces of this machine, one of [`INTERFACES`], as far as `WGPU_BACKEND` allows them. GL can show
+/// pictures only on the `display` that is named here.
+pub fn instance(
+    interfaces: wgpu::Backends,
+    display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>,
+) -> wgpu::Instance {
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: descriptor.backends & interfaces,
         display,
-        ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
-    };
-    wgpu::Instance::new(descriptor)
+        ..descriptor
+    })
 }
 
 impl Gpu {
@@ -61,7 +67,14 @@ impl Gpu {
     /// # Errors
     /// When no adapter gives a device.
     pub fn offscreen() -> Result<Self, GpuError> {
-        Self::find(&instance(None), None)
+        let mut found = Err(GpuError::NoAdapter("none was asked".to_owned()));
+        for interfaces in INTERFACES {
+            found = Self::find(&instance(interfaces, None), None);
+            if found.is_ok() {
+                break;
+            }
+        }
+        found
     }
 
     /// The best device that can draw into `surface`.
@@ -73,18 +86,16 @@ impl Gpu {
     }
 
     fn find(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, GpuError> {
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+        if let Some(surface) = surface {
+            adapters.retain(|adapter| adapter.is_surface_supported(surface));
+        }
+        adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
         let mut fault = GpuError::NoAdapter("none answers".to_owned());
-        for backends in BACKENDS {
-            let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-            if let Some(surface) = surface {
-                adapters.retain(|adapter| adapter.is_surface_supported(surface));
-            }
-            adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-            for adapter in adapters {
-                match Self::open(adapter) {
-                    Ok(gpu) => return Ok(gpu),
-                    Err(error) => fault = error,
-                }
+        for adapter in adapters {
+            match Self::open(adapter) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => fault = error,
             }
         }
         Err(fault)
