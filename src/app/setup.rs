@@ -13,7 +13,7 @@ use crate::units::PlanMap;
 /// Columns of the rasters that the session draws for the window.
 const COLUMNS: usize = 1024;
 /// The same where processor cores also draw the picture.
-const SOFTWARE_COLUMNS: usize = 640;
+const SOFTWARE_COLUMNS: usize = 512;
 /// Nodes of the land where the settings leave it to the program: on many cores, on few, and on few that also draw.
 const NODES: [usize; 3] = [60_000, 30_000, 15_000];
 /// From so many cores on there are many.

@@ -34,6 +34,9 @@ const IDLE_LOOK: Duration = Duration::from_millis(100);
 const HARDWARE_MS: f64 = 1000.0 / 60.0;
 /// Frame time aimed at on a software adapter: 20 Hz, above the 15 Hz that sculpting needs.
 const SOFTWARE_MS: f64 = 50.0;
+/// Least time between two lands on a software adapter, s: taking one over costs as much as a frame, and growth makes a
+/// smooth motion of fewer.
+const SOFTWARE_LAND_S: f64 = 0.12;
 /// Frame rate on monitors that do not tell theirs, Hz.
 const REFRESH_HZ: f64 = 60.0;
 /// How often a lost graphics card is looked for before the program gives up and is started anew by its keeper.
@@ -66,8 +69,9 @@ struct Open {
     next_frame_s: f64,
     last_frame_s: f64,
     shown_land: Option<u64>,
-    /// How old it was, years.
+    /// How old it was, years, and when it was shown, s since the program began.
     shown_yr: f64,
+    shown_s: f64,
     revivals: u32,
     _watch: Watch,
 }
@@ -129,6 +133,7 @@ impl Program {
             last_frame_s: 0.0,
             shown_land: None,
             shown_yr: 0.0,
+            shown_s: f64::NEG_INFINITY,
             revivals: 0,
             _watch: watch,
         };
@@ -220,7 +225,9 @@ impl Open {
         self.table.step(settings, now_us, dt_s);
         let size_px = self.graphics.size_px();
         let land = self.table.frame().land;
-        if self.shown_land != Some(land) {
+        let rests = self.graphics.gpu().is_software() && now_s - self.shown_s < SOFTWARE_LAND_S;
+        if self.shown_land != Some(land) && !rests {
+            self.shown_s = now_s;
             let surface = &self.table.frame().surface;
             self.graphics.show(surface, surface.elapsed_yr < self.shown_yr);
             self.shown_land = Some(land);

@@ -12,6 +12,9 @@ use crate::surface::{Raster, Surface};
 
 /// Time in which the land as drawn comes two thirds of the way to the land as it is, s.
 const GROWTH_S: f32 = 0.12;
+/// Least time between two drawings of the rivers where the land is computed in strips, s: they move slowly, and cost as
+/// much as a strip.
+const RIVERS_S: f32 = 0.4;
 /// Time after which it is there, s: then nothing more is computed.
 const SETTLED_S: f32 = 0.9;
 
@@ -47,7 +50,10 @@ pub(super) struct Growth {
     /// Next part of the light and colours to be computed.
     strip: u32,
     rivers_changed: bool,
+    /// Time since rivers were drawn, s.
+    rivers_s: f32,
     heights: Vec<f32>,
+    scratch: [Vec<f32>; 2],
     bytes: Vec<u8>,
     pieces: Vec<Reach>,
 }
@@ -94,7 +100,9 @@ impl Growth {
             evening_is_old: true,
             strip: 0,
             rivers_changed: true,
+            rivers_s: 0.0,
             heights: Vec::new(),
+            scratch: [Vec::new(), Vec::new()],
             bytes: Vec::new(),
             pieces: Vec::new(),
         }
@@ -119,8 +127,8 @@ impl Growth {
         upload::heights(&raster.data, self.towards.0, &mut self.heights);
         let heights = bytemuck::cast_slice(&self.heights);
         grid.new_height.fill(&gpu.queue, heights, size_of::<f32>() as u32);
-        upload::water(surface, &mut self.bytes);
-        grid.new_water.fill(&gpu.queue, &self.bytes, 2);
+        upload::water(surface, &mut self.scratch, &mut self.bytes);
+        grid.new_water.fill(&gpu.queue, &self.bytes, 4);
         upload::reaches(surface, &mut self.pieces);
         let bytes: &[u8] = bytemuck::cast_slice(&self.pieces);
         if bytes.len() as u64 > self.reaches.size() {
@@ -162,9 +170,9 @@ impl Growth {
         })
     }
 
-    /// Height of the plains and height of summits, metres, as drawn now.
-    pub(super) fn heights(&self) -> (f32, f32) {
-        (self.ground.lowland, self.ground.summit)
+    /// Height of the plains, metres, as drawn now.
+    pub(super) fn lowland(&self) -> f32 {
+        self.ground.lowland
     }
 
     /// Lets `dt_s` seconds of growth happen on a coloured land of `size` texels; `aslant`: in the evening's light too.
@@ -229,7 +237,10 @@ impl Growth {
             self.newer = 1 - self.newer;
             work.shape(encoder, self.newer);
         }
-        if self.rivers_changed {
+        self.rivers_s += dt_s;
+        let due = whole || arrived || self.quality.strips == 1 || self.rivers_s > RIVERS_S;
+        if self.rivers_changed && due {
+            self.rivers_s = 0.0;
             work.rivers(encoder, &self.reaches, self.reach_count);
             self.rivers_changed = false;
         }
@@ -249,7 +260,7 @@ impl Growth {
         } else {
             (blend * strips as f32).min(1.0)
         };
-        work.soak(encoder, part(size[1]), soaked);
+        work.soak(encoder, part, soaked);
         work.sheet(encoder, self.newer, &self.ramps, part(size[1]), aslant);
         self.strip = (strip + 1) % strips;
         self.left = self
