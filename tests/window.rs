@@ -7,21 +7,28 @@ mod window_support;
 
 use std::fs;
 
+use orogen::gesture::file::GestureFile;
 use window_support::fingers::{Script, gesture};
 use window_support::metrics::{Metrics, WHOLE_SECOND};
 use window_support::picture::Picture;
 use window_support::{Key, SLOW_S, Setup, Table};
 
 /// Mean difference of pixels that a visitor sees without looking for it, 0–255.
-const SEEN: f64 = 6.0;
+const SEEN: f64 = 5.0;
+
+/// Age at which touched land is compared with untouched land, years: five seconds after the start. Rivers and lakes
+/// change everywhere while land is young, on both alike.
+const AGE_YR: f64 = 2.5e6;
 
 #[test]
 fn two_hands_raise_a_range() {
     let Some(mut table) = Table::fresh("two_hands_raise_a_range", &Setup::default()) else {
         return;
     };
+    let untouched = table.look_at_age(AGE_YR, "untouched");
+    let land = table.save();
+    table.start_over();
     let start = table.settled();
-    let (land, picture) = (table.save(), table.look("before"));
 
     let mut hands = Script::default();
     let (west, east) = (table.at(0.27, 0.5), table.at(0.73, 0.5));
@@ -38,7 +45,7 @@ fn two_hands_raise_a_range() {
     });
     assert_eq!(end.pushes - start.pushes, 2);
 
-    let after = table.look("after");
+    let touched = table.look_at_age(AGE_YR, "touched");
     let risen_land = table.save();
     let between = table.at(0.5, 0.5);
     let risen = risen_land.risen(&land, between, 100.0);
@@ -48,28 +55,22 @@ fn two_hands_raise_a_range() {
         highest > start.max_m + 400.0,
         "the report's highest point: {highest:.0} m"
     );
-    // Rivers and lakes change everywhere while the land is young; the range has to stand out.
-    let far = [
-        (0.1, 0.25),
-        (0.1, 0.75),
-        (0.3, 0.9),
-        (0.7, 0.9),
-        (0.9, 0.25),
-        (0.9, 0.75),
-    ];
-    let far = far.map(|(x, y)| table.at(x, y));
-    let mut elsewhere = far.map(|at| after.difference(&picture, at, 50));
-    elsewhere.sort_by(f64::total_cmp);
-    let changed = after.difference(&picture, between, 50);
+    let changed = touched.difference(&untouched, between, 60);
     assert!(
-        changed > 2.0 * SEEN && changed > 2.0 * elsewhere[2],
-        "between the hands the picture changed by {changed:.1}, elsewhere by {elsewhere:.1?}"
+        changed > 3.0 * SEEN,
+        "between the hands the picture changed by {changed:.1}"
     );
-    for at in far {
-        let risen = risen_land.risen(&land, at, 50.0);
+    for (x, y) in [(0.06, 0.2), (0.06, 0.5), (0.06, 0.8), (0.94, 0.5)] {
+        let far = table.at(x, y);
+        let changed = touched.difference(&untouched, far, 40);
         assert!(
-            risen < 100.0,
-            "far from the hands the land rose by {risen:.0} m at {at:?}"
+            changed < SEEN,
+            "far from the hands the picture changed by {changed:.1} at {far:?}"
+        );
+        let changed = risen_land.changed(&land, far, 40.0);
+        assert!(
+            changed < 100.0,
+            "far from the hands the land changed by {changed:.0} m at {far:?}"
         );
     }
 }
@@ -200,71 +201,69 @@ fn an_unplugged_touchscreen_leaves_no_finger_behind() {
     assert!(risen > 50.0, "before the finger the land rose by {risen:.0} m");
 }
 
-/// Plays gesture files one after the other. Each has to be seen where its file says that the land changes, and the
-/// land has to be another there.
-fn answers(test: &str, names: &[&str]) {
-    let Some(mut table) = Table::fresh(test, &Setup::default()) else {
-        return;
-    };
+/// What the screen shows some time after a gesture file was played on fresh land. No touch of it may be dead.
+fn played(table: &mut Table, file: &GestureFile, name: &str) -> Picture {
+    table.start_over();
     let start = table.settled();
-    let land = table.save();
-    let mut places = Vec::new();
+    table.play(&Script::of_gesture(file, start.width.into()));
+    let touched = table.look_at_age(AGE_YR, name);
+    let end = table.settled();
+    assert_eq!(
+        end.dead_touches, start.dead_touches,
+        "{name}: a touch changed nothing"
+    );
+    touched
+}
+
+/// Plays gesture files. Each has to be seen where it says that the land changes.
+fn answered(table: &mut Table, untouched: &Picture, names: &[&str]) {
     for &name in names {
         let file = gesture(name);
-        let scale = f64::from(start.width) / file.header.size_mm.x;
-        let changes = file
-            .header
-            .expect
-            .iter()
-            .flat_map(|expect| &expect.land_changes_at);
-        let changes: Vec<_> = changes
-            .map(|change| (change.at.x * scale, change.at.y * scale))
-            .collect();
-        assert!(!changes.is_empty(), "{name} says no place");
-        let before = table.look(&format!("{name}-before"));
-        table.play(&Script::of_gesture(&file, start.width.into()));
-        let end = table.settled();
-        assert_eq!(
-            end.dead_touches, start.dead_touches,
-            "{name}: a touch changed nothing"
-        );
-        let after = table.look(&format!("{name}-after"));
-        for &at in &changes {
-            let changed = after.difference(&before, at, 25);
+        let touched = played(table, &file, name);
+        let expected = file.header.expect.unwrap_or_default().land_changes_at;
+        assert!(!expected.is_empty(), "{name} says no place");
+        for place in expected {
+            let share = place.at / file.header.size_mm;
+            let at = table.at(share.x, share.y);
+            let changed = touched.difference(untouched, at, 25);
             assert!(
                 changed > SEEN,
                 "{name}: the picture changed by {changed:.1} at {at:?}"
             );
         }
-        places.extend(changes.into_iter().map(|at| (name, at)));
-    }
-    let end = table.save();
-    for (name, at) in places {
-        let changed = end.changed(&land, at, 30.0);
-        assert!(
-            changed > 10.0,
-            "{name}: the land changed by {changed:.0} m at {at:?}"
-        );
     }
 }
 
 #[test]
 fn drumming_slapping_rubbing_and_writing_are_answered() {
-    answers(
-        "drumming_slapping_rubbing_and_writing_are_answered",
-        &["drumming", "slapping", "rubbing", "writing_a_name"],
-    );
+    let test = "drumming_slapping_rubbing_and_writing_are_answered";
+    let Some(mut table) = Table::fresh(test, &Setup::default()) else {
+        return;
+    };
+    let untouched = table.look_at_age(AGE_YR, "untouched");
+    let names = ["drumming", "slapping", "rubbing", "writing_a_name"];
+    answered(&mut table, &untouched, &names);
 }
 
 #[test]
 fn pulling_equal_pushes_and_a_neighbour_are_answered() {
-    answers(
-        "pulling_equal_pushes_and_a_neighbour_are_answered",
-        &[
-            "pulling_towards_oneself",
-            "two_equal_pushes",
-            "neighbour_leaning_in",
-        ],
+    let test = "pulling_equal_pushes_and_a_neighbour_are_answered";
+    let Some(mut table) = Table::fresh(test, &Setup::default()) else {
+        return;
+    };
+    let untouched = table.look_at_age(AGE_YR, "untouched");
+    let names = ["pulling_towards_oneself", "two_equal_pushes"];
+    answered(&mut table, &untouched, &names);
+    // A window is not told how large contacts are: the neighbour's arm is a finger to it, and may move the range.
+    let name = "neighbour_leaning_in";
+    let touched = played(&mut table, &gesture(name), name);
+    let squares =
+        (1..12).flat_map(|column| (1..7).map(move |row| (f64::from(column) / 12.0, f64::from(row) / 7.0)));
+    let squares = squares.map(|(x, y)| touched.difference(&untouched, table.at(x, y), 40));
+    let most = squares.fold(0.0, f64::max);
+    assert!(
+        most > 3.0 * SEEN,
+        "{name}: the picture changed by {most:.1} at most"
     );
 }
 

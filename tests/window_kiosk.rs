@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use window_support::fingers::Script;
-use window_support::{Key, Setup, Table};
+use window_support::{Key, SLOW_S, Setup, Table};
 
 /// A table that nobody uses for twenty seconds begins to count down from twenty.
 fn soon_idle() -> Setup<'static> {
@@ -130,14 +130,16 @@ fn visitors_cannot_leave_the_kiosk_and_staff_can() {
         for digit in wrong_then_right.chars() {
             tap(&mut table, &digit.to_string());
         }
+        tap(&mut table, "Enter");
     }
-    tap(&mut table, "Leave");
+    tap(&mut table, "Close the program");
+    tap(&mut table, "Press again to close");
     assert_eq!(table.ended(15.0).code(), Some(0));
 }
 
 /// Taps a key of the keypad or a button of the menu.
 fn tap(table: &mut Table, label: &str) {
-    let at = table.metrics.place(label, 5.0);
+    let at = table.metrics.place(label, SLOW_S);
     let mut touch = Script::default();
     touch.tap(0.0, 0.15, at);
     table.play(&touch);

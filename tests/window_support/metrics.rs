@@ -34,6 +34,8 @@ pub struct Second {
     pub control_presses: u64,
     pub resets: u64,
     pub panics: u64,
+    /// Age of the land, years.
+    pub elapsed_yr: f64,
     /// Highest point, metres.
     pub max_m: f64,
     /// The window's inside, pixels.
@@ -80,7 +82,12 @@ pub struct Metrics {
     read: usize,
     seconds: Vec<Second>,
     layout: Layout,
+    /// When the layout was read last.
+    laid_out: Instant,
 }
+
+/// Panels find their place within a few frames.
+const PANEL_RESTS: Duration = Duration::from_millis(700);
 
 impl Metrics {
     pub fn new(file: PathBuf) -> Self {
@@ -89,6 +96,7 @@ impl Metrics {
             read: 0,
             seconds: Vec::new(),
             layout: Layout::default(),
+            laid_out: Instant::now(),
         }
     }
 
@@ -159,13 +167,16 @@ impl Metrics {
             .unwrap_or_else(|| panic!("no {kind} among {:?}", controls.collect::<Vec<_>>()))
     }
 
-    /// A key of the keypad, or a button of the staff menu, as soon as it is shown.
+    /// A key of the keypad, or a button of the staff menu, as soon as it stands still.
     pub fn place(&mut self, label: &str, seconds: f64) -> At {
         let until = Instant::now() + Duration::from_secs_f64(seconds);
         loop {
             self.poll();
             let places = self.layout.menu.iter().chain(&self.layout.keypad).flatten();
-            if let Some(found) = places.clone().find(|place| place.label == label) {
+            let found = places.clone().find(|place| place.label == label);
+            if let Some(found) = found
+                && self.laid_out.elapsed() >= PANEL_RESTS
+            {
                 return found.at();
             }
             let labels: Vec<_> = places.map(|place| &place.label).collect();
@@ -188,6 +199,7 @@ impl Metrics {
                 self.seconds.push(second);
             } else {
                 let new: Layout = serde_json::from_value(value).unwrap_or_else(|e| panic!("{e} in: {line}"));
+                self.laid_out = Instant::now();
                 self.layout = Layout {
                     controls: new.controls.or(self.layout.controls.take()),
                     staff_corner: new.staff_corner.or(self.layout.staff_corner.take()),

@@ -183,6 +183,14 @@ impl Table {
         self.wait("fresh land", SLOW_S, |now| now.max_m < FRESH_M);
     }
 
+    /// What the screen shows when nothing is down and the land is so old.
+    pub fn look_at_age(&mut self, years: f64, name: &str) -> Picture {
+        self.wait("the land to age", 2.0 * SLOW_S, |now| {
+            now.contacts == 0 && now.elapsed_yr >= years
+        });
+        self.look(name)
+    }
+
     /// The place at a share of the window's width and height.
     pub fn at(&mut self, x: f64, y: f64) -> At {
         let now = self.metrics.newest();
