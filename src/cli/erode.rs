@@ -7,8 +7,7 @@ use serde::Serialize;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{LandFiles, Marks, Timings, write_json};
-use super::pictures::Pictures;
-use super::{EdgeChoice, ErodeArgs, Switch, on_threads};
+use super::{EdgeChoice, ErodeArgs, PictureChoice, Switch, on_threads};
 use crate::export::{OutDir, digest};
 use crate::input::maps::{MapKind, read_map};
 use crate::report::{Inputs, REPORT_VERSION, TerrainFacts};
@@ -55,12 +54,11 @@ pub(super) fn run(args: &ErodeArgs, console: Console) -> Result<(), Failure> {
     within("--years", args.years, 0.0, 1e9)?;
     within("--dt", args.dt, 1.0, 1e8)?;
     within("--km", args.km, 0.01, 100_000.0)?;
-    let pictures = Pictures::new(args.common.picture, args.common.size)?;
     on_threads(args.common.threads, || {
         let maps = Maps::read(args)?;
         let stem = name(args);
         let out = OutDir::create(args.common.out.join(&stem)).map_err(Failure::input)?;
-        erode(args, &maps, &params, &stem, (&out, &pictures), console)
+        erode(args, &maps, &params, &stem, &out, console)
     })
 }
 
@@ -195,7 +193,7 @@ fn erode(
     maps: &Maps,
     params: &ErosionParams,
     title: &str,
-    (out, pictures): (&OutDir, &Pictures),
+    out: &OutDir,
     console: Console,
 ) -> Result<(), Failure> {
     let mut timings = Timings::start();
@@ -285,11 +283,14 @@ fn erode(
         marks: Marks::default(),
         elapsed_yr: args.years,
     };
-    land.write(out, args.common.size, pictures, &mut timings)?;
+    land.write(out, args.common.size, args.common.picture, &mut timings)?;
     write_json(out, "report.json", &report)?;
     write_json(out, "timings.json", &timings.finish())?;
-    for shown in pictures.shown("report.json") {
-        Console::result(&out.path().join(shown).display().to_string());
-    }
+    let shown = if args.common.picture == PictureChoice::None {
+        "report.json"
+    } else {
+        "picture.png"
+    };
+    Console::result(&out.path().join(shown).display().to_string());
     Ok(())
 }

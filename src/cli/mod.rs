@@ -6,7 +6,6 @@ mod erode;
 mod failure;
 mod import;
 mod output;
-mod pictures;
 mod replay;
 #[cfg(feature = "app")]
 mod table;
@@ -86,32 +85,8 @@ struct TableArgs {
 enum PictureChoice {
     /// The relief map.
     Map,
-    /// The land in perspective, as the table shows it; needs graphics (a processor that draws will do).
-    #[cfg(feature = "app")]
-    Render,
-    /// Both of these; only the map where there are no graphics.
-    #[cfg(feature = "app")]
-    Both,
     /// No picture.
     None,
-}
-
-impl PictureChoice {
-    fn has_map(self) -> bool {
-        match self {
-            Self::Map => true,
-            #[cfg(feature = "app")]
-            Self::Both => true,
-            #[cfg(feature = "app")]
-            Self::Render => false,
-            Self::None => false,
-        }
-    }
-
-    #[cfg(feature = "app")]
-    fn has_render(self) -> bool {
-        matches!(self, Self::Render | Self::Both)
-    }
 }
 
 /// What all commands that compute a land have in common.
@@ -132,7 +107,7 @@ struct Common {
     /// Pixels along the width of pictures and height maps, such as 1009, 2017, 4033, 8129 or a power of two.
     #[arg(long, value_name = "N", default_value_t = 1920, value_parser = clap::value_parser!(u32).range(16..=16384))]
     size: u32,
-    /// Which pictures to draw.
+    /// Which picture to draw.
     #[arg(long, value_enum, default_value_t = PictureChoice::Map)]
     picture: PictureChoice,
 }

@@ -1,16 +1,18 @@
 //! The files of a computed land, the same for `replay` and `erode`.
 
 use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::io::{self, Cursor, Write};
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+use image::ImageFormat;
 use serde::Serialize;
 
+use super::PictureChoice;
 use super::failure::Failure;
-use super::pictures::{Pictures, map_png};
 use crate::export::height16::Height16;
 use crate::export::{Mesh, OutDir, exr, geojson, glb, ply};
+use crate::picture::{MapStyle, relief_map};
 use crate::sim::Sim;
 use crate::surface::rivers::{self, River};
 use crate::surface::{FaultTrace, PlateMark, Raster, Surface};
@@ -89,10 +91,11 @@ impl LandFiles<'_> {
         self,
         out: &OutDir,
         size: u32,
-        pictures: &Pictures,
+        picture: PictureChoice,
         timings: &mut Timings,
     ) -> Result<(), Failure> {
-        let (title, tin, z, uplift, flow, k) = (self.title, self.tin, self.z, self.uplift, self.flow, self.k);
+        let title = self.title.to_owned();
+        let (tin, z, uplift, flow, k) = (self.tin, self.z, self.uplift, self.flow, self.k);
         let water = Water::new(self.ground());
         let rivers = rivers::trace(water.graph(self.ground()), RIVER_AREA);
         let mut survey = Survey::new(tin, size as usize);
@@ -100,7 +103,25 @@ impl LandFiles<'_> {
         let surface = self.surface(&mut survey);
         timings.lap("rasters");
 
-        let texture = pictures.write(out, &surface, title)?;
+        let texture = match picture {
+            PictureChoice::None => None,
+            PictureChoice::Map => {
+                let style = MapStyle {
+                    title,
+                    ..MapStyle::default()
+                };
+                let png = map_png(&surface, &style)?;
+                out.write("picture.png", |w| w.write_all(&png))
+                    .map_err(Failure::other)?;
+                // The mesh wears the land alone, to the edge.
+                let bare = MapStyle {
+                    marks: false,
+                    lettering: false,
+                    ..MapStyle::default()
+                };
+                Some(map_png(&surface, &bare)?)
+            }
+        };
         timings.lap("picture");
 
         write_height_maps(out, &surface.height, &uplift_map, &surface.drainage.data)?;
@@ -144,6 +165,18 @@ impl LandFiles<'_> {
             ..bare
         }
     }
+}
+
+fn map_png(surface: &Surface, style: &MapStyle) -> Result<Vec<u8>, Failure> {
+    let map = relief_map(
+        surface,
+        style,
+        surface.height.width as u32,
+        surface.height.height as u32,
+    );
+    let mut png = Cursor::new(Vec::new());
+    map.write_to(&mut png, ImageFormat::Png).map_err(Failure::other)?;
+    Ok(png.into_inner())
 }
 
 fn write_height_maps(out: &OutDir, height: &Raster, uplift: &[f32], drainage: &[f32]) -> Result<(), Failure> {
@@ -210,7 +243,11 @@ pub(super) fn draw_frame(out: &OutDir, name: &str, sim: &Sim, title: &str, size:
     let mut survey = Survey::new(&sim.world().tin, size as usize);
     let flow = sim.flow();
     let land = land_of(sim, &flow, &[], title);
-    let png = map_png(&land.surface(&mut survey), title)?;
+    let style = MapStyle {
+        title: title.to_owned(),
+        ..MapStyle::default()
+    };
+    let png = map_png(&land.surface(&mut survey), &style)?;
     out.write(name, |w| w.write_all(&png))
         .map(drop)
         .map_err(Failure::other)

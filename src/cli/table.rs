@@ -8,8 +8,7 @@ use clap::ValueEnum;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::Timings;
-use super::pictures::Pictures;
-use super::{TableArgs, replay};
+use super::{PictureChoice, TableArgs, replay};
 use crate::app::{self, AppError, Options, SavedLand};
 use crate::export::OutDir;
 use crate::gesture::command::Mode;
@@ -66,7 +65,7 @@ fn save_land(land: &SavedLand, path: &Path) -> Result<(), Failure> {
     let timings = Timings::start();
     let out = OutDir::create(path).map_err(Failure::input)?;
     let sim = Sim::resume(land.clone());
-    replay::write_session(&sim, SAVED_TITLE, &out, (SAVED_SIZE, &Pictures::MAP), timings)
+    replay::write_session(&sim, SAVED_TITLE, &out, (SAVED_SIZE, PictureChoice::Map), timings)
 }
 
 fn failure(error: AppError) -> Failure {
