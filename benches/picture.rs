@@ -1,4 +1,4 @@
-//! Cost of a relief map, from a surface to pixels.
+//! Cost of a relief map from a surface to pixels, and of the table's frames.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec2;
@@ -55,5 +55,73 @@ fn relief(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, relief);
+/// Frames and uploads of the table's renderer at the quality of software adapters. Surfaces are of a third of the
+/// window's size and more, as the session makes them there.
+#[cfg(feature = "app")]
+fn frames(criterion: &mut Criterion) {
+    use std::time::Instant;
+
+    use orogen::gpu::Gpu;
+    use orogen::render::{Camera, Canvas, Focus, LandStyle, RenderQuality, flight};
+
+    /// Time between two frames, s.
+    const FRAME_S: f32 = 0.033;
+    // Nothing to draw with: nothing to measure.
+    let Ok(gpu) = Gpu::offscreen() else { return };
+    let mut group = criterion.benchmark_group(format!("frames on {}", gpu.info.name));
+    group.sample_size(10);
+    for (name, [width, height]) in [
+        ("1280x720", [1280, 720]),
+        ("1920x1080", [1920, 1080]),
+        ("3840x2160", [3840, 2160]),
+    ] {
+        let surface = surface(640, 360);
+        let style = LandStyle::default();
+        let viewport = DVec2::new(f64::from(width), f64::from(height));
+        let eye = flight(&Focus::of(&surface), &style, 0.0);
+        for (view, t) in [("plan", 0.0), ("oblique", 1.0)] {
+            let camera = Camera::between(LAND, viewport, &eye, t);
+            for state in ["settled", "growing"] {
+                let Ok(mut canvas) = Canvas::new(&gpu, [width, height], RenderQuality::SOFTWARE) else {
+                    continue;
+                };
+                canvas.land.show(&gpu, &surface);
+                let _ = canvas.draw(&gpu, &camera, &style, 1.0);
+                let growing = state == "growing";
+                group.bench_function(format!("{view} {name} {state}"), |bencher| {
+                    bencher.iter_custom(|frames| {
+                        (0..frames)
+                            .map(|_| {
+                                if growing {
+                                    canvas.land.show(&gpu, &surface);
+                                }
+                                let began = Instant::now();
+                                let _ = std::hint::black_box(canvas.draw(&gpu, &camera, &style, FRAME_S));
+                                began.elapsed()
+                            })
+                            .sum()
+                    });
+                });
+            }
+        }
+    }
+    for (width, height) in [(640, 360), (1024, 576)] {
+        let surface = surface(width, height);
+        let mut land = Canvas::new(&gpu, [64, 36], RenderQuality::SOFTWARE).map(|canvas| canvas.land);
+        group.bench_function(format!("upload {width}x{height}"), |bencher| {
+            bencher.iter(|| {
+                if let Ok(land) = &mut land {
+                    land.show(&gpu, &surface);
+                }
+                gpu.queue.submit([]);
+            });
+        });
+    }
+    group.finish();
+}
+
+#[cfg(not(feature = "app"))]
+fn frames(_: &mut Criterion) {}
+
+criterion_group!(benches, relief, frames);
 criterion_main!(benches);

@@ -8,8 +8,8 @@
 struct Grown {
     // Metres.
     @location(0) height: f32,
-    // Lake depth and drainage, as parts of what a byte holds.
-    @location(1) water: vec2<f32>,
+    // Part under water, drainage, root of the lake depth: each as part of what a byte holds.
+    @location(1) water: vec4<f32>,
 }
 
 @fragment
@@ -20,6 +20,6 @@ fn grow(@builtin(position) position: vec4<f32>) -> Grown {
     let inside = clamp(at, rim, vec2<i32>(ground.grid) - 1 - rim);
     var grown: Grown;
     grown.height = mix(textureLoad(drawn_height, at, 0).x, textureLoad(new_height, inside, 0).x, ground.blend);
-    grown.water = mix(textureLoad(drawn_water, at, 0).xy, textureLoad(new_water, at, 0).xy, ground.blend);
+    grown.water = mix(textureLoad(drawn_water, at, 0), textureLoad(new_water, at, 0), ground.blend);
     return grown;
 }

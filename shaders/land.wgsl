@@ -12,20 +12,23 @@ struct View {
     extent: vec2<f32>,
     // Cells of the mesh over the land.
     mesh: vec2<f32>,
+    // Where the mesh is densest, as parts of the land from its north-west corner.
+    focus: vec2<f32>,
+    // How much denser it is there: 0 not at all, 4 by half.
+    gathering: f32,
+    lowland: f32,
     // Rectangle of the land in the plan, clip space: corner and size.
     plan: vec4<f32>,
     // 0 in plan, 1 in oblique view.
     tilt: f32,
     // Heights are drawn so many times as high.
     exaggeration: f32,
-    lowland: f32,
-    summit: f32,
     // How thick the air is, 1 as usual.
     haze: f32,
     // Part of the light that is left, 0 to 1.
     lamp: f32,
     // 1 if the target encodes colours by itself.
-    encoded: f32,
+    encodes: f32,
     // Share of the evening's colours, 0 to 1.
     dusk: f32,
 }
@@ -39,8 +42,6 @@ struct View {
 
 // Colours of the air, in linear light.
 struct Air {
-    // The haze of the plan.
-    valley: vec4<f32>,
     // Mist over low land, and the blue of distance.
     mist: vec4<f32>,
     distance: vec4<f32>,
@@ -58,20 +59,17 @@ const BEYOND = 60000.0;
 // Where the mist ends, behind the horizon, metres.
 const FARTHEST = 260000.0;
 
-fn encode(colour: vec3<f32>) -> vec3<f32> {
-    let c = clamp(colour * view.lamp, vec3<f32>(0.0), vec3<f32>(1.0));
-    let gamma = select(1.055 * pow(c, vec3<f32>(1.0 / 2.4)) - 0.055, 12.92 * c, c <= vec3<f32>(0.0031308));
-    return select(gamma, c, view.encoded > 0.5);
+// As the target takes it.
+fn shown(srgb: vec3<f32>) -> vec3<f32> {
+    let c = srgb * view.lamp;
+    return select(c, decoded(c), view.encodes > 0.5);
 }
 
-// As `encode`, with half a step of the target's colours more or less (Jimenez 2014, interleaved gradient noise): where
-// tones pass into each other slowly, no bands are seen.
+// Linear light as the target takes it, with half a step of its colours more or less (Jimenez 2014, interleaved gradient
+// noise): where tones pass into each other slowly, no bands are seen.
 fn dithered(colour: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     let noise = fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715)))) - 0.5;
-    let c = encode(colour);
-    // One step of an encoded target is smaller in its shadows.
-    let step = select(vec3<f32>(1.0), 2.2 * pow(c, vec3<f32>(0.545)), view.encoded > 0.5);
-    return c + step * noise / 255.0;
+    return shown(encoded(colour) + noise / 255.0);
 }
 
 // Plan.
@@ -87,17 +85,9 @@ fn plan_quad(@builtin(vertex_index) index: u32) -> PlanPoint {
     return PlanPoint(vec4<f32>(view.plan.xy + corner * view.plan.zw, 0.0, 1.0), vec2<f32>(corner.x, 1.0 - corner.y));
 }
 
-// The air over low land: contrast grows with height.
-fn through_valley_air(colour: vec3<f32>, height: f32) -> vec3<f32> {
-    let share = smoothstep(0.0, view.summit, height);
-    return mix(colour, air.valley.rgb, 0.13 * view.haze * (1.0 - share) * (1.0 - share));
-}
-
 @fragment
 fn plan(point: PlanPoint) -> @location(0) vec4<f32> {
-    let seen = textureSample(sheet, sheet_sampler, point.uv);
-    let height = textureSampleLevel(stand, sheet_sampler, point.uv, 0.0).x * 1000.0;
-    return vec4<f32>(encode(through_valley_air(seen.rgb, height)), 1.0);
+    return vec4<f32>(shown(textureSampleLevel(sheet, sheet_sampler, point.uv, 0.0).rgb), 1.0);
 }
 
 // Perspective.
@@ -105,24 +95,10 @@ fn plan(point: PlanPoint) -> @location(0) vec4<f32> {
 struct MeshPoint {
     @builtin(position) position: vec4<f32>,
     @location(0) plan: vec2<f32>,
-    @location(1) height: f32,
-}
-
-// Vertices stand in rows from north to south; RINGS of them are beyond the border, ever farther apart.
-@vertex
-fn mesh(@builtin(vertex_index) index: u32) -> MeshPoint {
-    let columns = u32(view.mesh.x) + 1u + 2u * u32(RINGS);
-    let cell = vec2<f32>(f32(index % columns), f32(index / columns)) - RINGS;
-    let inner = clamp(cell, vec2<f32>(0.0), view.mesh);
-    let rings = cell - inner;
-    let part = abs(rings) / (RINGS - 1.0);
-    let away = select(BEYOND * (exp(3.0 * part) - 1.0) / (exp(3.0) - 1.0), vec2<f32>(FARTHEST), abs(rings) > vec2<f32>(RINGS - 0.5));
-    let grid = inner / view.mesh * view.extent + sign(rings) * away;
-    let height = textureSampleLevel(stand, sheet_sampler, grid / view.extent, 0.0).x * 1000.0;
-    let fade = 1.0 - smoothstep(0.0, 0.8 * BEYOND, length(away * sign(abs(rings))));
-    let plan = vec2<f32>(grid.x, view.extent.y - grid.y);
-    let drawn = mix(view.lowland, height, fade);
-    return MeshPoint(view.view_proj * vec4<f32>(plan, drawn * view.exaggeration, 1.0), plan, drawn);
+    // What the air adds, and the part of the land's light that it lets through.
+    @location(1) air: vec4<f32>,
+    // The sky that still water holds, and how much of it.
+    @location(2) mirrored: vec4<f32>,
 }
 
 // How much a direction is the sun's, 0 to 1.
@@ -142,45 +118,92 @@ fn sky_colour(way: vec3<f32>) -> vec3<f32> {
     return mix(mix(air.zenith.rgb, above, exp(-3.2 * rise)), rim, exp(-16.0 * rise));
 }
 
-// How deep the air is on the way to a place, if it is `depth` deep overhead and thins out by e every `scale` metres.
-fn air_depth(depth: f32, scale: f32, height: f32, eye: f32, distance: f32) -> f32 {
-    let down = max(eye - height, 1.0);
-    return depth * distance / down * (exp(-height / scale) - exp(-eye / scale));
+// The air before a place: the light it adds, and the part of what comes from there that it lets through. It changes
+// slowly, so that it is known well enough at the corners of the mesh.
+fn air_before(place: vec3<f32>) -> vec4<f32> {
+    let to_eye = view.eye.xyz - place;
+    let distance = length(to_eye);
+    let way = -to_eye / distance;
+    // Blue between the eye and far slopes; mist over low land. Both thin out upwards, by e over a height, so that their
+    // depth on the way to a place is that overhead times the slant: summits are clear.
+    let drawn = view.exaggeration;
+    let height = max(place.z - view.lowland * drawn, 0.0);
+    let slant = view.haze * distance / max(view.eye.z - view.lowland * drawn - height, 1.0);
+    let blue = exp(-slant * 0.042 * exp(-height / (3000.0 * drawn)));
+    let low = exp(-slant * 0.034 * exp(-height / (300.0 * drawn)));
+    let near = towards_sun(way);
+    let near2 = near * near;
+    var added = mix(air.distance.rgb, air.glow.rgb, 0.55 * near2 * near2) * (1.0 - blue);
+    added = mix(mix(air.mist.rgb, air.glow.rgb, 0.5 * near2 * near), added, low);
+    // The land's border is lost in the mist of the horizon, not cut.
+    let outside = length(place.xy - clamp(place.xy, vec2<f32>(0.0), view.extent));
+    let left = 1.0 - smoothstep(0.0, 0.85 * BEYOND, outside);
+    return vec4<f32>(mix(sky_colour(way), added, left), blue * low * left);
+}
+
+// What still water shows along a way: its ripples lean the mirror towards the horizon.
+fn mirrored_sky(way: vec3<f32>) -> vec4<f32> {
+    let grazing = 1.0 - clamp(-way.z, 0.0, 1.0);
+    let mirrored = normalize(vec3<f32>(way.xy, 0.3 * max(-way.z, 0.02)));
+    return vec4<f32>(sky_colour(mirrored), 0.25 + 0.70 * grazing * grazing * grazing);
+}
+
+// Where a line of the mesh stands, so that the lines are dense about the focus (Vinokur 1983): all are parts, 0 to 1.
+fn gathered(line: f32, focus: f32) -> f32 {
+    let strength = max(view.gathering, 1e-3);
+    let up = exp(strength);
+    let start = log((1.0 + (up - 1.0) * focus) / (1.0 + (1.0 / up - 1.0) * focus)) / (2.0 * strength);
+    return clamp(focus * (1.0 + sinh(strength * (line - start)) / sinh(strength * start)), 0.0, 1.0);
+}
+
+// Vertices stand in rows from north to south; RINGS of them are beyond the border, ever farther apart.
+@vertex
+fn mesh(@builtin(vertex_index) index: u32) -> MeshPoint {
+    let columns = u32(view.mesh.x) + 1u + 2u * u32(RINGS);
+    let cell = vec2<f32>(f32(index % columns), f32(index / columns)) - RINGS;
+    let inner = clamp(cell, vec2<f32>(0.0), view.mesh);
+    let part_of_land = vec2<f32>(gathered(inner.x / view.mesh.x, view.focus.x), gathered(inner.y / view.mesh.y, view.focus.y));
+    let rings = cell - inner;
+    let part = abs(rings) / (RINGS - 1.0);
+    let away = select(BEYOND * (exp(3.0 * part) - 1.0) / (exp(3.0) - 1.0), vec2<f32>(FARTHEST), abs(rings) > vec2<f32>(RINGS - 0.5));
+    let grid = part_of_land * view.extent + sign(rings) * away;
+    let height = textureSampleLevel(stand, sheet_sampler, grid / view.extent, 0.0).x * 1000.0;
+    let fade = 1.0 - smoothstep(0.0, 0.8 * BEYOND, length(away * sign(abs(rings))));
+    let plan = vec2<f32>(grid.x, view.extent.y - grid.y);
+    let place = vec3<f32>(plan, mix(view.lowland, height, fade) * view.exaggeration);
+    let way = normalize(place - view.eye.xyz);
+    return MeshPoint(view.view_proj * vec4<f32>(place, 1.0), plan, air_before(place), mirrored_sky(way));
+}
+
+// How far a place is outside the land, metres.
+fn outside(uv: vec2<f32>) -> f32 {
+    return length((uv - clamp(uv, vec2<f32>(0.0), vec2<f32>(1.0))) * view.extent);
+}
+
+// The land at evening: what lies there, seen through air.
+fn evening(point: MeshPoint, uv: vec2<f32>) -> vec3<f32> {
+    // What stands in the mirror is dim.
+    let roots = textureSampleBias(evening_sheet, sheet_sampler, uv, min(outside(uv) / 9000.0, 4.0));
+    let colour = mix(roots.rgb * roots.rgb, point.mirrored.rgb, roots.a * point.mirrored.a);
+    return colour * point.air.a + point.air.rgb;
+}
+
+fn uv_of(plan: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(plan.x / view.extent.x, 1.0 - plan.y / view.extent.y);
 }
 
 @fragment
 fn terrain(point: MeshPoint) -> @location(0) vec4<f32> {
-    let uv = vec2<f32>(point.plan.x / view.extent.x, 1.0 - point.plan.y / view.extent.y);
-    let outside = length((uv - clamp(uv, vec2<f32>(0.0), vec2<f32>(1.0))) * view.extent);
-    // What stands in the mirror is dim.
-    let evening = textureSampleBias(evening_sheet, sheet_sampler, uv, min(outside / 9000.0, 4.0));
-    let noon = textureSampleLevel(sheet, sheet_sampler, uv, 0.0);
-    let map = through_valley_air(noon.rgb, point.height);
-    let to_eye = view.eye.xyz - vec3<f32>(point.plan, point.height * view.exaggeration);
-    let distance = length(to_eye);
-    let way = -to_eye / distance;
+    return vec4<f32>(dithered(evening(point, uv_of(point.plan)), point.position.xy), 1.0);
+}
 
-    // Still water holds the sky.
-    // Its ripples lean the mirror towards the horizon.
-    let mirrored = normalize(vec3<f32>(way.xy, 0.3 * max(-way.z, 0.02)));
-    let grazing = pow(1.0 - clamp(-way.z, 0.0, 1.0), 3.0);
-    var colour = mix(evening.rgb, sky_colour(mirrored), evening.a * (0.25 + 0.70 * grazing));
-
-    // Blue between the eye and far slopes; mist over low land. Both thin out upwards: summits are clear.
-    let height = max(point.height - view.lowland, 0.0) * view.exaggeration;
-    let eye = max(view.eye.z - view.lowland * view.exaggeration, 1.0);
-    let blue = 1.0 - exp(-view.haze * air_depth(0.042, 3000.0 * view.exaggeration, height, eye, distance));
-    let towards = towards_sun(way);
-    let scattered = mix(air.distance.rgb, air.glow.rgb, 0.55 * towards * towards * towards * towards);
-    colour = mix(colour, scattered, blue);
-    let low = 1.0 - exp(-view.haze * air_depth(0.034, 300.0 * view.exaggeration, height, eye, distance));
-    colour = mix(colour, mix(air.mist.rgb, air.glow.rgb, 0.5 * towards * towards * towards), low);
-    // The land's border is lost in the mist of the horizon, not cut.
-    colour = mix(colour, sky_colour(way), smoothstep(0.0, 0.85 * BEYOND, outside));
-
-    colour = mix(map, colour, view.dusk);
-    let around = smoothstep(0.0, 600.0, outside) * (1.0 - smoothstep(0.1, 0.8, view.tilt));
-    colour = mix(colour, air.table.rgb, around);
+// On the way from the plan: the noon of the map becomes evening, and what is around the map comes out of the dark.
+@fragment
+fn dusk(point: MeshPoint) -> @location(0) vec4<f32> {
+    let uv = uv_of(point.plan);
+    let map = decoded(textureSampleLevel(sheet, sheet_sampler, uv, 0.0).rgb);
+    let around = smoothstep(0.0, 600.0, outside(uv)) * (1.0 - smoothstep(0.1, 0.8, view.tilt));
+    let colour = mix(mix(map, evening(point, uv), view.dusk), air.table.rgb, around);
     return vec4<f32>(dithered(colour, point.position.xy), 1.0);
 }
 

@@ -9,7 +9,7 @@ fn at(cell: vec2<i32>) -> f32 {
 
 fn level(cell: vec2<i32>) -> f32 {
     let inside = clamp(cell, vec2<i32>(0), vec2<i32>(ground.grid) - 1);
-    let depth = textureLoad(water, inside, 0).x;
+    let depth = textureLoad(water, inside, 0).z;
     return textureLoad(height, inside, 0).x + depth * depth * ground.deepest;
 }
 
@@ -66,6 +66,22 @@ fn forms(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         }
     }
     return vec4<f32>(sum / total / 1000.0, 0.0, 0.0, 0.0);
+}
+
+@group(0) @binding(3) var form: texture_2d<f32>;
+
+// The same with the slopes of the big forms, rise per metre to the east and to the north.
+@fragment
+fn form_slopes(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let cell = vec2<i32>(position.xy);
+    let last = vec2<i32>(textureDimensions(form)) - 1;
+    let size = ground.extent / ground.grid * FORM_CELLS;
+    let east = textureLoad(form, min(cell + vec2<i32>(1, 0), last), 0).x;
+    let west = textureLoad(form, max(cell - vec2<i32>(1, 0), vec2<i32>(0)), 0).x;
+    let north = textureLoad(form, max(cell - vec2<i32>(0, 1), vec2<i32>(0)), 0).x;
+    let south = textureLoad(form, min(cell + vec2<i32>(0, 1), last), 0).x;
+    let slope = vec2<f32>(east - west, north - south) * 1000.0 / (2.0 * size);
+    return vec4<f32>(textureLoad(form, cell, 0).x, slope, 0.0);
 }
 
 // Tangent of the horizon in a direction (cells), as far as shadows reach.

@@ -8,8 +8,9 @@
 @group(0) @binding(6) var water: texture_2d<f32>;
 @group(0) @binding(7) var rivers: texture_2d<f32>;
 @group(0) @binding(8) var cover_noise: texture_2d<f32>;
-// Colours by height, one row each: open ground (by height over the plains), wood, rock.
+// Colours by height, linear, one row each: open ground (by height over the plains), wood, rock.
 @group(0) @binding(9) var ramps: texture_2d<f32>;
+@group(0) @binding(10) var meadows: texture_2d<f32>;
 
 // Colours of light. Flat open ground receives exactly white.
 const SUN = vec3<f32>(1.0, 0.93, 0.77);
@@ -69,24 +70,21 @@ fn lowland_gain(steepness: f32) -> f32 {
     return 1.0 + 0.09 * (1.0 - exp(-s / 0.009)) / s;
 }
 
-fn ramp(row: f32, height: f32) -> vec3<f32> {
-    let u = (height - ground.ramp_low) / (ground.ramp_high - ground.ramp_low);
-    return textureSampleLevel(ramps, smooth_sampler, vec2<f32>(u, (row + 0.5) / RAMPS), 0.0).rgb;
-}
-
-fn colour_of(row: f32) -> vec3<f32> {
-    return ramp(row, ground.ramp_low);
+fn ramp(row: i32, height: f32) -> vec3<f32> {
+    let part = clamp((height - ground.ramp_low) / (ground.ramp_high - ground.ramp_low), 0.0, 1.0);
+    return textureLoad(ramps, vec2<i32>(i32(part * (RAMP_STEPS - 1.0) + 0.5), row), 0).rgb;
 }
 
 // Slope and profile of gullies down the slope, each generation running into the one before.
 fn carve(plan: vec2<f32>, down: vec2<f32>, steep: f32, texel: f32) -> vec3<f32> {
-    var way = -down / steep;
+    var way = -down / max(steep, 1e-6);
     var wavelength = 2.0 * ground.spacing;
     let carving = 0.55 + 0.45 * gradient(plan / (5.0 * wavelength), 0x51u);
     var strength = 0.55 * carving * min(steep, 1.0) * smoothstep(0.08, 0.40, steep);
     var carved = vec3<f32>(0.0);
     var share = 0.6;
-    for (var generation = 0; generation < GULLIES; generation++) {
+    let generations = select(0, GULLIES, steep > 0.06);
+    for (var generation = 0; generation < generations; generation++) {
         if wavelength < 2.5 * texel {
             break;
         }
@@ -117,6 +115,7 @@ struct Lain {
     // Sunlight that gets past the mountains, part of the sky that is seen, the evening's sunlight.
     passed: vec3<f32>,
     lake: f32,
+    shore: f32,
     depth: f32,
     river: f32,
 }
@@ -126,30 +125,23 @@ fn lain(position: vec2<f32>) -> Lain {
     let plan = vec2<f32>(uv.x, 1.0 - uv.y) * ground.extent;
     let texel = ground.extent.x / ground.sheet.x;
     let slope4 = spline(slopes, uv);
-    let stand4 = spline(stand, uv);
+    let stand4 = textureSampleLevel(stand, smooth_sampler, uv, 0.0);
     let height = stand4.x * 1000.0;
     let middle = slope4.zw;
     let steep = length(middle);
 
     // The big forms.
-    let form_step = FORM_CELLS / ground.grid;
-    let big = textureSampleLevel(form, smooth_sampler, uv, 0.0).x * 1000.0;
-    let big_e = textureSampleLevel(form, smooth_sampler, uv + vec2<f32>(form_step.x, 0.0), 0.0).x * 1000.0;
-    let big_w = textureSampleLevel(form, smooth_sampler, uv - vec2<f32>(form_step.x, 0.0), 0.0).x * 1000.0;
-    let big_n = textureSampleLevel(form, smooth_sampler, uv - vec2<f32>(0.0, form_step.y), 0.0).x * 1000.0;
-    let big_s = textureSampleLevel(form, smooth_sampler, uv + vec2<f32>(0.0, form_step.y), 0.0).x * 1000.0;
-    let form_slope = vec2<f32>(big_e - big_w, big_n - big_s) / (2.0 * form_step * ground.extent);
+    let big4 = textureSampleLevel(form, smooth_sampler, uv, 0.0);
+    let big = big4.x * 1000.0;
+    let form_slope = big4.yz;
 
     // In the plains only the smoothed land counts: its finest noise is no form.
     let rugged = smoothstep(0.015, 0.10, stand4.z);
     let sharp = slope4.xy + 0.8 * smoothstep(0.06, 0.25, stand4.z) * (slope4.xy - middle);
     var slope = mix(middle, sharp, rugged);
-    var furrow = 0.0;
-    if steep > 0.06 {
-        let carved = carve(plan, middle, steep, texel);
-        slope += carved.xy;
-        furrow = carved.z;
-    }
+    let carved = carve(plan, middle, steep, texel);
+    slope += carved.xy;
+    let furrow = carved.z;
 
     let passed = textureSampleLevel(lit, smooth_sampler, uv, 0.0).xyz;
 
@@ -164,7 +156,7 @@ fn lain(position: vec2<f32>) -> Lain {
     let convexity = clamp(stand4.y / 0.06, -1.0, 1.0) + furrow;
     let rise = height - big;
     let over_lowland = height - ground.lowland;
-    var colour = ramp(0.0, over_lowland + (20.0 + 0.1 * clamp(over_lowland, 0.0, 1200.0)) * border);
+    var colour = ramp(OPEN, over_lowland + (20.0 + 0.1 * clamp(over_lowland, 0.0, 1200.0)) * border);
 
     let plain = 1.0 - smoothstep(0.05, 0.16, form_steepness + 0.5 * steep);
     let open = 1.0 - smoothstep(0.004, 0.02, form_steepness);
@@ -172,11 +164,15 @@ fn lain(position: vec2<f32>) -> Lain {
     let tone = 0.030 * broad + 0.035 * swell;
     let warmth = 0.022 * broad + 0.030 * swell;
     colour *= mix(vec3<f32>(1.0), vec3<f32>(1.0 + tone + warmth, 1.0 + tone, 1.0 + tone - warmth), plain);
-    let wet = textureSampleLevel(water, smooth_sampler, uv, 0.0).xy;
-    let river = textureSampleLevel(rivers, smooth_sampler, uv, 0.0).xy;
+    var wet = textureSampleLevel(water, smooth_sampler, uv, 0.0).xyz;
+    if wet.x > 0.02 {
+        wet = spline(water, uv).xyz;
+    }
+    let river = textureLoad(rivers, vec2<i32>(position), 0).x;
+    let beside = textureSampleLevel(meadows, smooth_sampler, uv, 0.0).x;
     let drained = smoothstep(0.0, 0.7, wet.y);
-    let meadow = max(river.y, 0.35 * drained) * (1.0 - smoothstep(0.06, 0.20, steepness));
-    colour = mix(colour, colour_of(WATER_MEADOW), 0.75 * meadow);
+    let meadow = max(beside, 0.35 * drained) * (1.0 - smoothstep(0.06, 0.20, steepness));
+    colour = mix(colour, WATER_MEADOW, 0.75 * meadow);
 
     let tree_line = ground.tree_line - 130.0 * northness + 190.0 * border;
     let below = 1.0 - smoothstep(tree_line - 260.0, tree_line + 60.0, height);
@@ -184,23 +180,29 @@ fn lain(position: vec2<f32>) -> Lain {
     let grove = smoothstep(0.15, 0.75, 0.9 * broad + 0.12 * fine - 0.35 * swell);
     let clearing = smoothstep(-0.95, -0.25, 0.45 * fine + 0.6 * broad + 0.45 * northness);
     let wood = below * max(rooted * clearing, 0.30 * grove * plain);
-    colour = mix(colour, ramp(1.0, height), 0.88 * wood);
+    colour = mix(colour, ramp(WOOD, height), 0.88 * wood);
 
     let alpine = smoothstep(ground.tree_line - 200.0, ground.tree_line + 500.0, height + 260.0 * border);
     let scree = alpine * smoothstep(0.42, 0.66, steepness + 0.12 * fine) * 0.6;
-    colour = mix(colour, colour_of(SCREE), scree);
+    colour = mix(colour, SCREE, scree);
     let bare = smoothstep(0.74 - 0.20 * alpine, 1.02 - 0.20 * alpine, steepness + 0.10 * fine + 0.10 * convexity);
     let barren = smoothstep(ground.snow_line - 600.0, ground.snow_line - 50.0, height + 260.0 * border);
-    colour = mix(colour, ramp(2.0, height) * (1.0 + 0.07 * fine), max(bare, 0.8 * barren) * (0.55 + 0.45 * alpine));
+    colour = mix(colour, ramp(ROCK, height) * (1.0 + 0.07 * fine), max(bare, 0.8 * barren) * (0.55 + 0.45 * alpine));
 
-    let snow_line = ground.snow_line - 330.0 * northness + 170.0 * border + 90.0 * convexity;
-    let lies = smoothstep(snow_line - 90.0, snow_line + 190.0, height + 120.0 * fine);
+    let snow_line = ground.snow_line - 330.0 * northness + 170.0 * border + 70.0 * convexity;
+    let lies = smoothstep(snow_line - 120.0, snow_line + 220.0, height + 120.0 * fine);
     let slides = smoothstep(0.85, 1.25, steepness + 0.08 * fine);
     let snow = lies * (1.0 - 0.75 * slides);
-    colour = mix(colour, colour_of(SNOW), snow);
+    colour = mix(colour, SNOW, snow);
 
-    let depth = wet.x * wet.x * ground.deepest;
-    return Lain(plan, colour, snow, slope, form_slope, steep, height, passed, smoothstep(0.15, 0.85, depth), depth, river.x);
+    let depth = wet.z * wet.z * ground.deepest;
+    // The shore is where half of the ground around is under water; it is as sharp as the texels allow.
+    let edge = clamp(0.5 * texel / (2.6 * SHORE_BLUR * ground.spacing), 0.02, 0.3);
+    let lake = smoothstep(0.5 - edge, 0.5 + edge, wet.x);
+    let shore = lake * (1.0 - smoothstep(0.5 + edge, 0.5 + 3.0 * edge, wet.x));
+    // Thin lines look thinner where they are mixed in linear light.
+    let inked = river * (1.5 - 0.5 * river);
+    return Lain(plan, colour, snow, slope, form_slope, steep, height, passed, lake, shore, depth, inked);
 }
 
 // Light from the north-west as a draughtsman sets it, relative to flat open ground.
@@ -222,17 +224,19 @@ fn noon(land: Lain) -> vec3<f32> {
 // The colour of water of some depth over a bottom in some light.
 fn standing_water(depth: f32, bottom: vec3<f32>, sky: f32) -> vec3<f32> {
     let share = 0.45 * smoothstep(5.0, 400.0, depth) + 0.55 * (1.0 - exp(-depth / 260.0));
-    return mix(colour_of(SHALLOW), colour_of(DEEP), share) * mix(vec3<f32>(1.0), bottom, 0.22) * (0.80 + 0.20 * sky);
+    return mix(SHALLOW, DEEP, share) * mix(vec3<f32>(1.0), bottom, 0.22) * (0.80 + 0.20 * sky);
 }
 
 // The printed map's colour.
 fn mapped(land: Lain) -> vec3<f32> {
     let light = noon(land);
-    let shore = land.lake * (1.0 - smoothstep(0.85, 6.0, land.depth));
     var colour = land.colour * light;
-    colour = mix(colour, colour_of(SHORE) * mix(vec3<f32>(1.0), light, 0.5), 0.92 * land.river * (1.0 - land.lake));
+    colour = mix(colour, RIVER * mix(vec3<f32>(1.0), light, 0.2), min(land.river, 1.0) * (1.0 - land.lake));
     let lake = standing_water(land.depth, light, land.passed.y);
-    return mix(colour, mix(lake, colour_of(SHORE), 0.55 * shore), land.lake);
+    colour = mix(colour, mix(lake, SHORE, 0.6 * land.shore), land.lake);
+    // The air over low land: contrast grows with height.
+    let depth = 1.0 - smoothstep(0.0, ground.summit, land.height);
+    return mix(colour, VALLEY, 0.13 * depth * depth);
 }
 
 // The same land in the evening: a low warm sun on one side, the blue of the sky on the other.
@@ -248,10 +252,11 @@ fn at_evening(land: Lain) -> vec3<f32> {
     let back = max(dot(slope, vec2<f32>(EVENING_EAST, EVENING_NORTH)) * up, 0.0);
     let light = EVENING_SUN * (direct * land.passed.z) + EVENING_SKY * dome + EVENING_GROUND * back;
     // Low light makes colours deep, all but the snow's.
-    let deep = mix(pow(land.colour, vec3<f32>(1.28)), land.colour, land.snow);
-    let lake = mix(colour_of(SHALLOW), colour_of(DEEP), 0.5 + 0.5 * (1.0 - exp(-land.depth / 120.0)));
+    let grey = vec3<f32>(dot(land.colour, vec3<f32>(0.30, 0.59, 0.11)));
+    let deep = mix(pow(mix(land.colour, grey, 0.16), vec3<f32>(1.28)), land.colour, land.snow);
+    let lake = mix(SHALLOW, DEEP, 0.5 + 0.5 * (1.0 - exp(-land.depth / 120.0)));
     let wet = max(land.lake, 0.9 * land.river);
-    let water = mix(colour_of(SHORE), lake, land.lake) * mix(EVENING_SKY, vec3<f32>(0.34), 0.4);
+    let water = mix(SHORE, lake, land.lake) * mix(EVENING_SKY, vec3<f32>(0.34), 0.4);
     let colour = mix(deep * light, water, wet);
     // The brightest lights come out softly.
     let over = max(colour - 0.6, vec3<f32>(0.0));
@@ -260,12 +265,13 @@ fn at_evening(land: Lain) -> vec3<f32> {
 
 @fragment
 fn sheet(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let land = lain(position.xy);
-    return vec4<f32>(mapped(land), max(land.lake, land.river));
+    return vec4<f32>(encoded(mapped(lain(position.xy))), 1.0);
 }
 
 struct Sheets {
+    // sRGB.
     @location(0) map: vec4<f32>,
+    // Roots of linear light, and water.
     @location(1) evening: vec4<f32>,
 }
 
@@ -273,5 +279,5 @@ struct Sheets {
 fn sheets(@builtin(position) position: vec4<f32>) -> Sheets {
     let land = lain(position.xy);
     let water = max(land.lake, land.river);
-    return Sheets(vec4<f32>(mapped(land), water), vec4<f32>(at_evening(land), water));
+    return Sheets(vec4<f32>(encoded(mapped(land)), 1.0), vec4<f32>(sqrt(at_evening(land)), water));
 }

@@ -8,6 +8,10 @@ pub(super) enum Failure {
     /// Bad usage or bad input: the line names the file, line or field and what was expected. Exit code 2.
     #[error("{0}")]
     Input(String),
+    /// There is nothing to draw with. Exit code 3.
+    #[cfg(feature = "app")]
+    #[error("{0}")]
+    NoGraphics(String),
     /// Anything else. Exit code 1.
     #[error("{0}")]
     Other(String),
@@ -19,6 +23,12 @@ impl Failure {
         Self::Input(one_line(&error.to_string()))
     }
 
+    /// No graphics adapter, and what to do.
+    #[cfg(feature = "app")]
+    pub(super) fn no_graphics(error: impl std::fmt::Display) -> Self {
+        Self::NoGraphics(one_line(&error.to_string()))
+    }
+
     /// Any other failure.
     pub(super) fn other(error: impl std::fmt::Display) -> Self {
         Self::Other(one_line(&error.to_string()))
@@ -28,6 +38,8 @@ impl Failure {
     pub(super) fn code(&self) -> ExitCode {
         match self {
             Self::Input(_) => ExitCode::from(2),
+            #[cfg(feature = "app")]
+            Self::NoGraphics(_) => ExitCode::from(3),
             Self::Other(_) => ExitCode::FAILURE,
         }
     }

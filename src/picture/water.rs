@@ -141,6 +141,9 @@ fn cover(
     Some(mask)
 }
 
+/// Colour of rivers, `0xRRGGBB`.
+pub(crate) const RIVER: u32 = 0x4a_8bb2;
+
 /// Rivers on the pixels.
 pub(super) struct Rivers {
     water: Mask,
@@ -163,7 +166,7 @@ impl Rivers {
                 let width = drawn_width(drainage);
                 width + 0.9 * (width / 1.6).min(1.0)
             })?,
-            blue: linear(0x4a_8bb2),
+            blue: linear(RIVER),
             dark: linear(0x34_586e),
         })
     }

@@ -42,6 +42,7 @@ pub(super) struct Growth {
     strip: u32,
     rivers_changed: bool,
     heights: Vec<f32>,
+    scratch: [Vec<f32>; 2],
     bytes: Vec<u8>,
     pieces: Vec<Reach>,
 }
@@ -88,6 +89,7 @@ impl Growth {
             strip: 0,
             rivers_changed: true,
             heights: Vec::new(),
+            scratch: [Vec::new(), Vec::new()],
             bytes: Vec::new(),
             pieces: Vec::new(),
         }
@@ -112,8 +114,8 @@ impl Growth {
         upload::heights(&raster.data, self.towards.0, &mut self.heights);
         let heights = bytemuck::cast_slice(&self.heights);
         grid.new_height.fill(&gpu.queue, heights, size_of::<f32>() as u32);
-        upload::water(surface, &mut self.bytes);
-        grid.new_water.fill(&gpu.queue, &self.bytes, 2);
+        upload::water(surface, &mut self.scratch, &mut self.bytes);
+        grid.new_water.fill(&gpu.queue, &self.bytes, 4);
         upload::reaches(surface, &mut self.pieces);
         let bytes: &[u8] = bytemuck::cast_slice(&self.pieces);
         if bytes.len() as u64 > self.reaches.size() {
@@ -149,9 +151,9 @@ impl Growth {
         })
     }
 
-    /// Height of the plains and height of summits, metres, as drawn now.
-    pub(super) fn heights(&self) -> (f32, f32) {
-        (self.ground.lowland, self.ground.summit)
+    /// Height of the plains, metres, as drawn now.
+    pub(super) fn lowland(&self) -> f32 {
+        self.ground.lowland
     }
 
     /// Lets `dt_s` seconds of growth happen on a coloured land of `size` texels; `aslant`: in the evening's light too.
@@ -236,7 +238,7 @@ impl Growth {
         } else {
             (blend * strips as f32).min(1.0)
         };
-        work.soak(encoder, part(size[1]), soaked);
+        work.soak(encoder, part, soaked);
         work.sheet(encoder, self.newer, &self.ramps, part(size[1]), aslant);
         self.strip = (strip + 1) % strips;
         self.left = self

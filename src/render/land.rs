@@ -10,7 +10,6 @@ use super::passes::{self, Pipelines, Sheet, group};
 use super::quality::RenderQuality;
 use crate::gpu::Gpu;
 use crate::picture::colour::{linear, smoothstep};
-use crate::picture::cover::Palette;
 use crate::surface::Surface;
 use crate::units::Extent;
 
@@ -67,7 +66,7 @@ const DUSK: f32 = 0.6;
 /// Draws one land.
 pub struct LandRenderer {
     quality: RenderQuality,
-    encoded: bool,
+    encodes: bool,
     pipelines: Pipelines,
     growth: Growth,
     view: wgpu::Buffer,
@@ -93,7 +92,6 @@ impl LandRenderer {
         let device = &gpu.device;
         let rgb = |hex: u32| linear(hex).extend(1.0).to_array();
         let air = Air {
-            valley: Palette::new(0.0).haze.extend(1.0).to_array(),
             mist: rgb(colours::MIST),
             distance: rgb(colours::DISTANCE),
             glow: rgb(colours::GLOW),
@@ -104,12 +102,12 @@ impl LandRenderer {
         };
         Self {
             quality,
-            encoded: format.is_srgb(),
+            encodes: format.is_srgb(),
             pipelines: Pipelines::new(device, format, quality.light, quality.samples),
             growth: Growth::new(gpu, quality),
             view: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("view"),
-                size: size_of::<View>() as u64,
+                size: (size_of::<View>() as u64).next_multiple_of(16),
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
@@ -180,7 +178,6 @@ impl LandRenderer {
         self.growth.exaggerate(style.exaggeration);
         self.growth
             .step(gpu, &self.pipelines, encoder, texels, dt_s, tilted);
-        let (lowland, summit) = self.growth.heights();
         let cells = self.mesh_cells();
         let (half_width, half_height) = camera.half_view();
         let [right, up, forward] = camera.axes();
@@ -192,19 +189,20 @@ impl LandRenderer {
             forward: forward.as_vec3().extend(0.0).to_array(),
             extent: [self.extent.width as f32, self.extent.height as f32],
             mesh: cells.map(|cells| cells as f32),
+            focus: self.densest(camera),
+            gathering: self.quality.mesh_gathering,
+            lowland: self.growth.lowland(),
             plan: clip_rect(corner, size, viewport),
             tilt: camera.tilt() as f32,
             exaggeration: style.drawn_exaggeration(camera.tilt()) as f32,
-            lowland,
-            summit,
             haze: style.haze,
             lamp: style.lamp,
-            encoded: f32::from(u8::from(self.encoded)),
+            encodes: f32::from(u8::from(self.encodes)),
             dusk: smoothstep(0.0, DUSK, camera.tilt() as f32),
         };
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         if tilted {
-            self.draw_aslant(gpu, encoder, target, size_px, cells);
+            self.draw_aslant(gpu, encoder, target, size_px, cells, camera.tilt() < 1.0);
         } else {
             self.draw_plan(gpu, encoder, target);
         }
@@ -232,7 +230,7 @@ impl LandRenderer {
     fn draw_plan(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
         let table = self.table_colour();
         let mut pass = passes::pass(encoder, "plan", &[target], wgpu::LoadOp::Clear(table));
-        let Some(looks) = self.looks(gpu, &self.pipelines.plan, &[0, 1, 2, 3, 4]) else {
+        let Some(looks) = self.looks(gpu, &self.pipelines.plan, &[0, 1, 2]) else {
             return;
         };
         pass.set_pipeline(&self.pipelines.plan);
@@ -247,6 +245,7 @@ impl LandRenderer {
         target: &wgpu::TextureView,
         size_px: [u32; 2],
         cells: [u32; 2],
+        dusk: bool,
     ) {
         let device = &gpu.device;
         if self.mesh.as_ref().is_none_or(|mesh| mesh.cells != cells) {
@@ -283,19 +282,31 @@ impl LandRenderer {
             }),
             ..wgpu::RenderPassDescriptor::default()
         });
+        let (pipeline, bindings): (_, &[u32]) = if dusk {
+            (&self.pipelines.dusk, &[0, 1, 2, 3, 4, 5])
+        } else {
+            (&self.pipelines.terrain, &[0, 1, 3, 4, 5])
+        };
         let (Some(sky), Some(land)) = (
             self.looks(gpu, &self.pipelines.sky, &[0, 4]),
-            self.looks(gpu, &self.pipelines.terrain, &[0, 1, 2, 3, 4, 5]),
+            self.looks(gpu, pipeline, bindings),
         ) else {
             return;
         };
-        pass.set_pipeline(&self.pipelines.sky);
-        pass.set_bind_group(0, &sky, &[]);
-        pass.draw(0..3, 0..1);
-        pass.set_pipeline(&self.pipelines.terrain);
+        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &land, &[]);
         pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..mesh.count, 0, 0..1);
+        // Where no land is.
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.set_bind_group(0, &sky, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// Where the mesh is densest: at what the camera looks at, as parts of the land from its north-west corner.
+    fn densest(&self, camera: &Camera) -> [f32; 2] {
+        let at = camera.target().truncate() / self.extent.size();
+        [at.x, 1.0 - at.y].map(|part| (part as f32).clamp(0.1, 0.9))
     }
 
     fn mesh_cells(&self) -> [u32; 2] {
@@ -307,7 +318,7 @@ impl LandRenderer {
     /// What is around the plan, as the target takes it.
     fn table_colour(&self) -> wgpu::Color {
         let hex = colours::TABLE;
-        let colour = if self.encoded {
+        let colour = if self.encodes {
             linear(hex)
         } else {
             Vec3::new(

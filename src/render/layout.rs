@@ -3,8 +3,13 @@
 use std::fmt::Write as _;
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 
+use super::upload::SHORE_BLUR;
+use crate::picture::colour::linear;
+use crate::picture::cover::Palette;
 use crate::picture::light::SUN_ELEVATION;
+use crate::picture::water::RIVER;
 
 /// As `Ground` in `shaders/ground.wgsl`, which says what the fields mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -40,14 +45,15 @@ pub struct View {
     pub forward: [f32; 4],
     pub extent: [f32; 2],
     pub mesh: [f32; 2],
+    pub focus: [f32; 2],
+    pub gathering: f32,
+    pub lowland: f32,
     pub plan: [f32; 4],
     pub tilt: f32,
     pub exaggeration: f32,
-    pub lowland: f32,
-    pub summit: f32,
     pub haze: f32,
     pub lamp: f32,
-    pub encoded: f32,
+    pub encodes: f32,
     pub dusk: f32,
 }
 
@@ -56,7 +62,6 @@ pub struct View {
 #[repr(C)]
 #[expect(missing_docs, reason = "the shader's own struct says it")]
 pub struct Air {
-    pub valley: [f32; 4],
     pub mist: [f32; 4],
     pub distance: [f32; 4],
     pub glow: [f32; 4],
@@ -95,6 +100,7 @@ pub const SHADERS: [(&str, &str); 7] = [
 
 /// What several shaders share.
 const GROUND: &str = include_str!("../../shaders/ground.wgsl");
+const ENCODE: &str = include_str!("../../shaders/encode.wgsl");
 
 /// Looks in each direction when light is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,6 +117,8 @@ pub struct LightQuality {
 pub(super) const FORM_CELLS: u32 = 8;
 /// Cells along one texel of the light.
 pub(super) const LIGHT_CELLS: u32 = 2;
+/// Texels of the sheet along one texel of the meadows.
+pub(super) const MEADOW_TEXELS: u32 = 4;
 /// Generations of gullies below the mesh.
 const GULLIES: u32 = 3;
 /// Radius over which big forms are taken, metres.
@@ -121,23 +129,15 @@ const MEADOW: f32 = 1400.0;
 const FARTHEST_LOOK: f64 = 110.0;
 
 /// Rows of vertices beyond each side of the land.
-pub(super) const RINGS: u32 = 22;
+pub(super) const RINGS: u32 = 12;
 /// Where the evening's sun stands, radians clockwise from north, and its height over the horizon, radians.
 pub(super) const EVENING_AZIMUTH: f64 = 290.0 / 180.0 * std::f64::consts::PI;
 const EVENING_ELEVATION: f64 = 0.27;
 
-/// Rows of the ramp texture.
-pub(super) const RAMP_ROWS: [&str; 9] = [
-    "OPEN",
-    "WOOD",
-    "ROCK",
-    "SCREE",
-    "SNOW",
-    "WATER_MEADOW",
-    "SHALLOW",
-    "DEEP",
-    "SHORE",
-];
+/// Rows of the ramp texture: colours by height.
+pub(super) const RAMP_ROWS: [&str; 3] = ["OPEN", "WOOD", "ROCK"];
+/// Heights that ramps know.
+pub(super) const RAMP_STEPS: u32 = 1024;
 
 /// Factor from one step to the next, so that `steps` steps from `first` cells reach [`FARTHEST_LOOK`].
 fn stride(steps: u32, first: f64) -> f64 {
@@ -179,23 +179,42 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
         ("SUN_SINE", f64::from(SUN_ELEVATION).sin()),
         ("SUN_COSINE", f64::from(SUN_ELEVATION).cos()),
         ("RINGS", f64::from(RINGS)),
+        ("SHORE_BLUR", SHORE_BLUR),
     ];
     for (name, value) in evening {
         constant(name, &float(value));
     }
-    constant("RAMPS", &float(RAMP_ROWS.len() as f64));
+    constant("RAMP_STEPS", &float(f64::from(RAMP_STEPS)));
     for (row, name) in RAMP_ROWS.iter().enumerate() {
-        constant(name, &float(row as f64));
+        constant(name, &row);
+    }
+    let palette = Palette::new(0.0);
+    let colours = [
+        ("SCREE", palette.scree),
+        ("SNOW", palette.snow),
+        ("WATER_MEADOW", palette.water_meadow),
+        ("SHALLOW", palette.shallow),
+        ("DEEP", palette.deep),
+        ("SHORE", palette.shore),
+        ("RIVER", linear(RIVER)),
+        ("VALLEY", palette.haze),
+    ];
+    for (name, Vec3 { x, y, z }) in colours {
+        constant(name, &format_args!("vec3<f32>({x:?}, {y:?}, {z:?})"));
     }
     let own = SHADERS
         .iter()
         .find(|(other, _)| *other == name)
         .map_or("", |(_, own)| own);
-    let shared = if matches!(name, "land" | "shrink") {
-        ""
-    } else {
-        GROUND
+    let shared = match name {
+        "shrink" => "",
+        "land" => ENCODE,
+        _ => GROUND,
     };
-    let noise = if name == "sheet" { SHADERS[2].1 } else { "" };
-    format!("{text}{shared}{noise}{own}")
+    let more = if name == "sheet" {
+        [SHADERS[2].1, ENCODE].concat()
+    } else {
+        String::new()
+    };
+    format!("{text}{shared}{more}{own}")
 }

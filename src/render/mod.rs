@@ -21,5 +21,5 @@ pub use camera::{Camera, Oblique, plan_rect};
 pub use flight::{Focus, flight};
 pub use land::{LandRenderer, LandStyle};
 pub use layout::LightQuality;
-pub use offscreen::picture;
+pub use offscreen::{Canvas, picture};
 pub use quality::RenderQuality;

@@ -26,39 +26,83 @@ pub fn picture(
     quality: RenderQuality,
 ) -> Result<RgbaImage, GpuError> {
     let size = camera.viewport_px().round();
-    let (width, height) = (size.x as u32, size.y as u32);
-    let most = gpu.device.limits().max_texture_dimension_2d.min(MAX_SIDE);
-    if width > most || height > most {
-        let refused = format!("a picture of {width} × {height} pixels; it draws {most} along a side");
-        return Err(GpuError::Refused(refused));
-    }
-    let mut land = LandRenderer::new(gpu, FORMAT, quality);
-    land.show(gpu, surface);
-    let target = Sheet::new(&gpu.device, "picture", FORMAT, [width, height]);
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-            label: Some("picture"),
-        });
-    land.draw(
-        gpu,
-        &mut encoder,
-        &target.view,
-        [width, height],
-        camera,
-        style,
-        1.0,
-    );
-    let pixels = read(gpu, encoder, &target)?;
-    if let Some(fault) = gpu.take_fault() {
-        return Err(GpuError::Refused(fault));
-    }
-    RgbaImage::from_raw(width, height, pixels)
-        .ok_or_else(|| GpuError::Refused("the picture came back incomplete".to_owned()))
+    let mut canvas = Canvas::new(gpu, [size.x as u32, size.y as u32], quality)?;
+    canvas.land.show(gpu, surface);
+    canvas.draw(gpu, camera, style, 1.0)?;
+    canvas.image(gpu)
 }
 
-/// Runs what is encoded and brings the texels of `target` back, four bytes each.
-fn read(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, target: &Sheet) -> Result<Vec<u8>, GpuError> {
+/// A land and a picture to draw it into, frame after frame, as a window would.
+pub struct Canvas {
+    /// The land.
+    pub land: LandRenderer,
+    target: Sheet,
+}
+
+impl Canvas {
+    /// A picture of so many pixels.
+    ///
+    /// # Errors
+    /// When that is none, or more than the card can draw.
+    pub fn new(gpu: &Gpu, size_px: [u32; 2], quality: RenderQuality) -> Result<Self, GpuError> {
+        let most = gpu.device.limits().max_texture_dimension_2d.min(MAX_SIDE);
+        if size_px.iter().any(|side| !(1..=most).contains(side)) {
+            let [width, height] = size_px;
+            let refused =
+                format!("a picture of {width} × {height} pixels; it draws 1 to {most} along a side");
+            return Err(GpuError::Refused(refused));
+        }
+        Ok(Self {
+            land: LandRenderer::new(gpu, FORMAT, quality),
+            target: Sheet::new(&gpu.device, "picture", FORMAT, size_px),
+        })
+    }
+
+    /// Draws a frame, `dt_s` seconds after the one before, and waits until the card has done it.
+    ///
+    /// # Errors
+    /// When the card refuses, or is lost.
+    pub fn draw(&mut self, gpu: &Gpu, camera: &Camera, style: &LandStyle, dt_s: f32) -> Result<(), GpuError> {
+        let mut encoder = encoder(gpu);
+        let size_px = self.target.size;
+        self.land
+            .draw(gpu, &mut encoder, &self.target.view, size_px, camera, style, dt_s);
+        gpu.queue.submit([encoder.finish()]);
+        done(gpu)
+    }
+
+    /// The picture as it was drawn last.
+    ///
+    /// # Errors
+    /// When the card refuses, or is lost.
+    pub fn image(&self, gpu: &Gpu) -> Result<RgbaImage, GpuError> {
+        let [width, height] = self.target.size;
+        RgbaImage::from_raw(width, height, read(gpu, &self.target)?)
+            .ok_or_else(|| GpuError::Refused("the picture came back incomplete".to_owned()))
+    }
+}
+
+fn encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("picture"),
+        })
+}
+
+/// Waits until the card has done what was submitted.
+fn done(gpu: &Gpu) -> Result<(), GpuError> {
+    gpu.device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .map_err(|error| GpuError::Refused(error.to_string()))?;
+    if gpu.lost() {
+        return Err(GpuError::Refused("the graphics device is lost".to_owned()));
+    }
+    gpu.take_fault()
+        .map_or(Ok(()), |fault| Err(GpuError::Refused(fault)))
+}
+
+/// Brings the texels of `target` back, four bytes each.
+fn read(gpu: &Gpu, target: &Sheet) -> Result<Vec<u8>, GpuError> {
     let [width, height] = target.size;
     let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -67,6 +111,7 @@ fn read(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, target: &Sheet) -> Result<
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
+    let mut encoder = encoder(gpu);
     encoder.copy_texture_to_buffer(
         target.texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
@@ -80,15 +125,13 @@ fn read(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, target: &Sheet) -> Result<
         target.texture.size(),
     );
     gpu.queue.submit([encoder.finish()]);
-    let (done, result) = std::sync::mpsc::channel();
+    let (mapping, result) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
         // Nobody waits any more: then nobody misses it.
-        let _ = done.send(mapped);
+        let _ = mapping.send(mapped);
     });
+    done(gpu)?;
     let refused = |why: &dyn std::fmt::Display| GpuError::Refused(why.to_string());
-    gpu.device
-        .poll(wgpu::PollType::wait_indefinitely())
-        .map_err(|error| refused(&error))?;
     result
         .recv()
         .map_err(|error| refused(&error))?

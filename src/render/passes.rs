@@ -5,18 +5,20 @@ use crate::picture::light::PENUMBRA;
 
 /// Heights, metres.
 pub(super) const HEIGHT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-/// Lake depth and drainage of a new land.
-pub(super) const NEW_WATER: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
+/// Water of a new land.
+pub(super) const NEW_WATER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// The same of the land as drawn, fine enough to be mixed in small steps.
-pub(super) const WATER: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+pub(super) const WATER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Slopes and heights that are looked at between cells.
 pub(super) const SHAPE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Light, river and noise.
 pub(super) const LIGHT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Rivers.
-pub(super) const RIVERS: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Unorm;
-/// The coloured land.
-pub(super) const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Rivers and meadows.
+pub(super) const RIVERS: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+/// The coloured land: sRGB, or roots of linear light, both without the card's own coding, which costs software more.
+pub(super) const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Colours by height.
+pub(super) const RAMP: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Depth of the mesh.
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -25,9 +27,11 @@ pub(super) struct Pipelines {
     pub(super) grow: wgpu::RenderPipeline,
     pub(super) relief: wgpu::RenderPipeline,
     pub(super) forms: wgpu::RenderPipeline,
+    pub(super) form_slopes: wgpu::RenderPipeline,
     pub(super) light: wgpu::RenderPipeline,
     pub(super) variation: wgpu::RenderPipeline,
     pub(super) river: wgpu::RenderPipeline,
+    pub(super) meadow: wgpu::RenderPipeline,
     pub(super) soak: wgpu::RenderPipeline,
     pub(super) sheet: wgpu::RenderPipeline,
     pub(super) sheets: wgpu::RenderPipeline,
@@ -35,6 +39,7 @@ pub(super) struct Pipelines {
     pub(super) plan: wgpu::RenderPipeline,
     pub(super) sky: wgpu::RenderPipeline,
     pub(super) terrain: wgpu::RenderPipeline,
+    pub(super) dusk: wgpu::RenderPipeline,
 }
 
 /// One pipeline, before it is made.
@@ -84,6 +89,20 @@ impl Pipelines {
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &Reach::ATTRIBUTES,
         })];
+        let ribbons = |name, vertex, fragment| {
+            Recipe {
+                name,
+                module: &rivers,
+                vertex,
+                fragment,
+                targets: &[blended(RIVERS, GREATEST)],
+                buffers: &reaches,
+                strip: true,
+                depth: None,
+                samples: 1,
+            }
+            .make(device)
+        };
         let window = [plain(target)];
         let seen = |name, vertex, fragment, depth, samples| {
             Recipe {
@@ -102,21 +121,12 @@ impl Pipelines {
         Self {
             grow: onto("grow", &grow, "grow", &[plain(HEIGHT), plain(WATER)]),
             relief: onto("relief", &relief, "relief", &[plain(SHAPE), plain(SHAPE)]),
-            forms: onto("forms", &relief, "forms", &[plain(SHAPE)]),
+            forms: onto("forms", &relief, "forms", &[plain(HEIGHT)]),
+            form_slopes: onto("form slopes", &relief, "form_slopes", &[plain(SHAPE)]),
             light: onto("light", &relief, "light", &[plain(LIGHT)]),
             variation: onto("variation", &noise, "variation", &[plain(LIGHT)]),
-            river: Recipe {
-                name: "river",
-                module: &rivers,
-                vertex: "ribbon",
-                fragment: "river",
-                targets: &[blended(RIVERS, GREATEST)],
-                buffers: &reaches,
-                strip: true,
-                depth: None,
-                samples: 1,
-            }
-            .make(device),
+            river: ribbons("river", "ribbon", "river"),
+            meadow: ribbons("meadow", "meadow_ribbon", "meadow"),
             soak: onto("soak", &rivers, "soak", &[blended(RIVERS, BY_CONSTANT)]),
             sheet: onto("sheet", &sheet, "sheet", &[plain(SHEET)]),
             sheets: onto("sheets", &sheet, "sheets", &[plain(SHEET), plain(SHEET)]),
@@ -126,7 +136,7 @@ impl Pipelines {
                 "sky",
                 "sky_cover",
                 "sky",
-                Some(wgpu::CompareFunction::Always),
+                Some(wgpu::CompareFunction::LessEqual),
                 samples,
             ),
             terrain: seen(
@@ -136,6 +146,7 @@ impl Pipelines {
                 Some(wgpu::CompareFunction::Less),
                 samples,
             ),
+            dusk: seen("dusk", "mesh", "dusk", Some(wgpu::CompareFunction::Less), samples),
         }
     }
 }

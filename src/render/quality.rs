@@ -7,6 +7,9 @@ use super::layout::LightQuality;
 pub struct RenderQuality {
     /// Cells of the mesh from west to east, seen aslant.
     pub mesh_columns: u32,
+    /// How much denser the mesh is where one looks: 0 not at all; at 4 its cells are half as wide there, and twice as
+    /// wide on the land's border.
+    pub mesh_gathering: f32,
     /// Looks towards sun and sky.
     pub light: LightQuality,
     /// Parts in which light and colours are computed anew while the land grows, one part each frame: the more, the
@@ -22,6 +25,7 @@ impl RenderQuality {
     /// For graphics cards.
     pub const HIGH: Self = Self {
         mesh_columns: 1024,
+        mesh_gathering: 1.5,
         light: LightQuality {
             sun_steps: 40,
             sky_directions: 12,
@@ -33,13 +37,14 @@ impl RenderQuality {
     };
     /// For processor cores that also run the simulation.
     pub const SOFTWARE: Self = Self {
-        mesh_columns: 320,
+        mesh_columns: 192,
+        mesh_gathering: 4.0,
         light: LightQuality {
             sun_steps: 14,
             sky_directions: 6,
             sky_steps: 5,
         },
-        strips: 4,
+        strips: 6,
         samples: 1,
         sheet_per_pixel: 1.0,
     };

@@ -1,13 +1,12 @@
 //! The passes that shape, light and colour the land, and the textures they fill.
 
-use super::layout::{FORM_CELLS, LIGHT_CELLS, RAMP_ROWS, Reach};
+use super::layout::{FORM_CELLS, LIGHT_CELLS, MEADOW_TEXELS, RAMP_ROWS, RAMP_STEPS, Reach};
 use super::passes::{self, Pipelines, Sheet, group, pass};
 use crate::gpu::Gpu;
-use crate::picture::colour::Encoder;
 use crate::picture::cover::Palette;
 
-/// Heights between which ramps are read, metres, and texels between them.
-pub(super) const RAMP: (f32, f32, u32) = (-500.0, 5000.0, 512);
+/// Heights between which ramps are read, metres.
+pub(super) const RAMP: (f32, f32) = (-500.0, 5000.0);
 
 /// Textures of one grid of heights.
 pub(super) struct Grid {
@@ -20,14 +19,17 @@ pub(super) struct Grid {
     slopes: Sheet,
     /// Height in km in the first channel.
     pub(super) stand: Sheet,
+    /// Heights of the big forms, and with their slopes.
+    form_heights: Sheet,
     form: Sheet,
     pub(super) light: Sheet,
 }
 
 /// Textures of one size of the coloured land.
 pub(super) struct Colours {
-    fresh_rivers: Sheet,
-    rivers: Sheet,
+    /// As they are, and as drawn.
+    rivers: [Sheet; 2],
+    meadows: [Sheet; 2],
     variation: Sheet,
     /// The land in the printed map's colours.
     pub(super) sheet: Sheet,
@@ -100,8 +102,15 @@ impl Work<'_> {
         self.run(
             encoder,
             &self.pipelines.forms,
-            (&[&grid.form], CLEAR),
+            (&[&grid.form_heights], CLEAR),
             &[(1, look(&grid.height[newer])), (2, look(&grid.water[newer]))],
+            (0, grid.form.size[1]),
+        );
+        self.run(
+            encoder,
+            &self.pipelines.form_slopes,
+            (&[&grid.form], CLEAR),
+            &[(3, look(&grid.form_heights))],
             (0, grid.form.size[1]),
         );
     }
@@ -118,43 +127,53 @@ impl Work<'_> {
     }
 
     pub(super) fn rivers(&self, encoder: &mut wgpu::CommandEncoder, reaches: &wgpu::Buffer, count: u32) {
-        let pipeline = &self.pipelines.river;
-        let looks = group(
-            &self.gpu.device,
-            pipeline,
-            &[(0, self.uniform.as_entire_binding())],
-        );
-        let mut pass = pass(encoder, "rivers", &[&self.colours.fresh_rivers.view], CLEAR);
-        if count > 0 {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &looks, &[]);
-            pass.set_vertex_buffer(0, reaches.slice(..));
-            pass.draw(0..4, 0..count);
+        let colours = self.colours;
+        for (pipeline, target) in [
+            (&self.pipelines.river, &colours.rivers[0]),
+            (&self.pipelines.meadow, &colours.meadows[0]),
+        ] {
+            let looks = group(
+                &self.gpu.device,
+                pipeline,
+                &[(0, self.uniform.as_entire_binding())],
+            );
+            let mut pass = pass(encoder, "rivers", &[&target.view], CLEAR);
+            if count > 0 {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &looks, &[]);
+                pass.set_vertex_buffer(0, reaches.slice(..));
+                pass.draw(0..4, 0..count);
+            }
         }
     }
 
-    pub(super) fn soak(&self, encoder: &mut wgpu::CommandEncoder, (from, rows): (u32, u32), share: f32) {
-        if rows == 0 {
-            return;
-        }
-        let pipeline = &self.pipelines.soak;
-        let looks = group(
-            &self.gpu.device,
-            pipeline,
-            &[(1, look(&self.colours.fresh_rivers))],
-        );
-        let mut pass = pass(encoder, "soak", &[&self.colours.rivers.view], wgpu::LoadOp::Load);
+    /// Mixes a share of the rivers and meadows as they are into those as drawn, in the rows that `part` names.
+    pub(super) fn soak(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        part: impl Fn(u32) -> (u32, u32),
+        share: f32,
+    ) {
         let share = f64::from(share);
-        pass.set_blend_constant(wgpu::Color {
-            r: share,
-            g: share,
-            b: share,
-            a: share,
-        });
-        pass.set_scissor_rect(0, from, self.colours.rivers.size[0], rows);
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &looks, &[]);
-        pass.draw(0..3, 0..1);
+        for [fresh, drawn] in [&self.colours.rivers, &self.colours.meadows] {
+            let (from, rows) = part(drawn.size[1]);
+            if rows == 0 {
+                continue;
+            }
+            let pipeline = &self.pipelines.soak;
+            let looks = group(&self.gpu.device, pipeline, &[(1, look(fresh))]);
+            let mut pass = pass(encoder, "soak", &[&drawn.view], wgpu::LoadOp::Load);
+            pass.set_blend_constant(wgpu::Color {
+                r: share,
+                g: share,
+                b: share,
+                a: share,
+            });
+            pass.set_scissor_rect(0, from, drawn.size[0], rows);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &looks, &[]);
+            pass.draw(0..3, 0..1);
+        }
     }
 
     /// Colours some rows; with the evening's light if they are seen `aslant`.
@@ -187,9 +206,10 @@ impl Work<'_> {
                 (4, look(&grid.form)),
                 (5, look(&grid.light)),
                 (6, look(&grid.water[newer])),
-                (7, look(&colours.rivers)),
+                (7, look(&colours.rivers[1])),
                 (8, look(&colours.variation)),
                 (9, look(ramps)),
+                (10, look(&colours.meadows[1])),
             ],
             rows,
         );
@@ -222,9 +242,10 @@ impl Work<'_> {
 
 impl Colours {
     pub(super) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let coarse = size.map(|side| side.div_ceil(MEADOW_TEXELS));
         Self {
-            fresh_rivers: Sheet::new(device, "fresh rivers", passes::RIVERS, size),
-            rivers: Sheet::new(device, "rivers", passes::RIVERS, size),
+            rivers: [(); 2].map(|()| Sheet::new(device, "rivers", passes::RIVERS, size)),
+            meadows: [(); 2].map(|()| Sheet::new(device, "meadows", passes::RIVERS, coarse)),
             variation: Sheet::new(device, "variation", passes::LIGHT, size),
             sheet: Sheet::new(device, "sheet", passes::SHEET, size),
             evening: None,
@@ -271,6 +292,7 @@ impl Grid {
             water: [sheet("water", passes::WATER, 1), sheet("water", passes::WATER, 1)],
             slopes: sheet("slopes", passes::SHAPE, 1),
             stand: sheet("stand", passes::SHAPE, 1),
+            form_heights: sheet("form heights", passes::HEIGHT, FORM_CELLS),
             form: sheet("form", passes::SHAPE, FORM_CELLS),
             light: sheet("light", passes::LIGHT, LIGHT_CELLS),
         }
@@ -286,36 +308,22 @@ pub(super) fn reach_buffer(device: &wgpu::Device, pieces: u64) -> wgpu::Buffer {
     })
 }
 
-/// The printed map's palette as a texture, one row per colour scale.
+/// The printed map's colours by height as a texture, one row each.
 pub(super) fn ramps(gpu: &Gpu) -> Sheet {
     let palette = Palette::new(0.0);
-    let encoder = Encoder::new();
-    let columns = RAMP.2;
-    let mut texels = Vec::with_capacity(4 * RAMP_ROWS.len() * columns as usize);
-    for row in RAMP_ROWS {
-        for column in 0..columns {
-            let height = RAMP.0 + (RAMP.1 - RAMP.0) * (column as f32 + 0.5) / columns as f32;
-            let colour = match row {
-                "OPEN" => palette.open.at(height),
-                "WOOD" => palette.wood.at(height),
-                "ROCK" => palette.rock.at(height),
-                "SCREE" => palette.scree,
-                "SNOW" => palette.snow,
-                "WATER_MEADOW" => palette.water_meadow,
-                "SHALLOW" => palette.shallow,
-                "DEEP" => palette.deep,
-                _ => palette.shore,
-            };
-            let [red, green, blue] = encoder.encode(colour);
-            texels.extend([red, green, blue, 255]);
+    let mut texels: Vec<[f32; 4]> = Vec::with_capacity(RAMP_ROWS.len() * RAMP_STEPS as usize);
+    for ramp in [&palette.open, &palette.wood, &palette.rock] {
+        for step in 0..RAMP_STEPS {
+            let height = RAMP.0 + (RAMP.1 - RAMP.0) * step as f32 / (RAMP_STEPS - 1) as f32;
+            texels.push(ramp.at(height).extend(1.0).to_array());
         }
     }
-    let sheet = Sheet::new(
-        &gpu.device,
-        "ramps",
-        passes::SHEET,
-        [columns, RAMP_ROWS.len() as u32],
+    let size = [RAMP_STEPS, RAMP_ROWS.len() as u32];
+    let sheet = Sheet::new(&gpu.device, "ramps", passes::RAMP, size);
+    sheet.fill(
+        &gpu.queue,
+        bytemuck::cast_slice(&texels),
+        size_of::<[f32; 4]>() as u32,
     );
-    sheet.fill(&gpu.queue, &texels, 4);
     sheet
 }
