@@ -410,6 +410,7 @@ fn import_writes_a_gesture_file_that_replays() {
 
 /// Something here can draw, as far as the command can see.
 #[cfg(feature = "app")]
+#[expect(clippy::print_stderr, reason = "a test that is left out says so")]
 fn can_draw() -> bool {
     let can = orogen::gpu::Gpu::offscreen().is_ok();
     let required = std::env::var_os("OROGEN_REQUIRE_GPU").is_some_and(|value| value == "1");

@@ -4,6 +4,7 @@
 //! Where nothing can draw, the tests say so and pass; with `OROGEN_REQUIRE_GPU=1` they fail.
 
 #![cfg(feature = "app")]
+#![expect(clippy::print_stderr, reason = "a test that is left out says so")]
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
