@@ -1,7 +1,5 @@
 //! Cost of a relief map from a surface to pixels, and of the table's frames.
 
-use std::time::Instant;
-
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec2;
 use orogen::picture::{MapStyle, relief_map};
@@ -61,17 +59,16 @@ fn relief(criterion: &mut Criterion) {
 /// window's size and more, as the session makes them there.
 #[cfg(feature = "app")]
 fn frames(criterion: &mut Criterion) {
+    use std::time::Instant;
+
     use orogen::gpu::Gpu;
     use orogen::render::{Camera, Canvas, Focus, LandStyle, RenderQuality, flight};
 
     /// Time between two frames, s.
     const FRAME_S: f32 = 0.033;
-    let gpu = match Gpu::offscreen() {
-        Ok(gpu) => gpu,
-        Err(error) => return println!("frames: left out: {error}"),
-    };
-    println!("frames: {} ({:?})", gpu.info.name, gpu.info.backend);
-    let mut group = criterion.benchmark_group("frames");
+    // Nothing to draw with: nothing to measure.
+    let Ok(gpu) = Gpu::offscreen() else { return };
+    let mut group = criterion.benchmark_group(format!("frames on {}", gpu.info.name));
     group.sample_size(10);
     for (name, [width, height]) in [
         ("1280x720", [1280, 720]),

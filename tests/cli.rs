@@ -407,3 +407,72 @@ fn import_writes_a_gesture_file_that_replays() {
         &["bad.events:3:", "expected"],
     );
 }
+
+/// Something here can draw, as far as the command can see.
+#[cfg(feature = "app")]
+#[expect(clippy::print_stderr, reason = "a test that is left out says so")]
+fn can_draw() -> bool {
+    let can = orogen::gpu::Gpu::offscreen().is_ok();
+    let required = std::env::var_os("OROGEN_REQUIRE_GPU").is_some_and(|value| value == "1");
+    assert!(can || !required, "no graphics adapter");
+    if !can {
+        eprintln!("skipped: no graphics adapter");
+    }
+    can
+}
+
+#[cfg(feature = "app")]
+#[test]
+fn the_evening_is_drawn_beside_the_map_or_alone() {
+    if !can_draw() {
+        return;
+    }
+    let dir = folder();
+    let both = replay(&dir.path().join("both"), &["--picture", "both"]);
+    assert!(both.join("picture.png").is_file());
+    let render = image::open(both.join("render.png")).expect("a picture").to_rgb8();
+    assert_eq!((render.width(), render.height()), (320, 180));
+    let first = render.get_pixel(0, 0);
+    assert!(render.pixels().any(|pixel| pixel != first), "something is drawn");
+
+    let alone = replay(&dir.path().join("alone"), &["--picture", "render"]);
+    assert!(alone.join("render.png").is_file());
+    assert!(!alone.join("picture.png").exists());
+}
+
+#[cfg(feature = "app")]
+#[test]
+fn without_an_adapter_the_evening_fails_and_both_draws_the_map() {
+    let run = |picture: &str, dir: &Path| {
+        Command::new(env!("CARGO_BIN_EXE_orogen"))
+            .args(["replay", &gesture("two_hands_push"), "--out", &text(dir)])
+            .args([
+                "--nodes",
+                "500",
+                "--size",
+                "64",
+                "--years",
+                "1e5",
+                "--picture",
+                picture,
+            ])
+            // No interface has this name.
+            .env("WGPU_BACKEND", "none")
+            .output()
+            .expect("the binary runs")
+    };
+    let dir = folder();
+    let refused = run("render", &dir.path().join("render"));
+    let error = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(3), "{error}");
+    assert_eq!(error.trim_end().lines().count(), 1, "{error}");
+    assert!(error.contains("--picture map"), "{error}");
+    assert!(!dir.path().join("render").exists(), "nothing is written");
+
+    let warned = run("both", &dir.path().join("both"));
+    let error = String::from_utf8_lossy(&warned.stderr);
+    assert!(warned.status.success(), "{error}");
+    assert!(error.contains("no render.png"), "{error}");
+    let out = dir.path().join("both").join("two_hands_push");
+    assert!(out.join("picture.png").is_file() && !out.join("render.png").exists());
+}

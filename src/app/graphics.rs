@@ -56,22 +56,13 @@ impl Graphics {
     /// # Errors
     /// When there is none.
     pub(super) fn new(window: &Arc<Window>, display: &OwnedDisplayHandle) -> Result<Self, GpuError> {
-        let mut found = Err(GpuError::NoAdapter("none was asked".to_owned()));
-        for interfaces in crate::gpu::INTERFACES {
-            found = Self::with(interfaces, window, display);
-            if found.is_ok() {
-                break;
-            }
-        }
-        found
+        Self::with(crate::gpu::instance(Some(Box::new(display.clone()))), window).or_else(|first| {
+            let fallback = crate::gpu::fallback_instance(Some(Box::new(display.clone())));
+            Self::with(fallback, window).map_err(|_| first)
+        })
     }
 
-    fn with(
-        interfaces: wgpu::Backends,
-        window: &Arc<Window>,
-        display: &OwnedDisplayHandle,
-    ) -> Result<Self, GpuError> {
-        let instance = crate::gpu::instance(interfaces, Some(Box::new(display.clone())));
+    fn with(instance: wgpu::Instance, window: &Arc<Window>) -> Result<Self, GpuError> {
         let surface = instance
             .create_surface(Arc::clone(window))
             .map_err(|error| GpuError::Surface(error.to_string()))?;

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::output::{LandFiles, Marks, Timings, write_json};
-use super::{EdgeChoice, ErodeArgs, PictureChoice, Switch, on_threads};
+use super::output::{LandFiles, Marks, Pictures, Timings, write_json};
+use super::{EdgeChoice, ErodeArgs, Switch, on_threads};
 use crate::export::{OutDir, digest};
 use crate::input::maps::{MapKind, read_map};
 use crate::report::{Inputs, REPORT_VERSION, TerrainFacts};
@@ -57,8 +57,9 @@ pub(super) fn run(args: &ErodeArgs, console: Console) -> Result<(), Failure> {
     on_threads(args.common.threads, || {
         let maps = Maps::read(args)?;
         let stem = name(args);
+        let pictures = Pictures::new(args.common.picture)?;
         let out = OutDir::create(args.common.out.join(&stem)).map_err(Failure::input)?;
-        erode(args, &maps, &params, &stem, &out, console)
+        erode(args, &maps, &params, &stem, (&out, &pictures), console)
     })
 }
 
@@ -193,7 +194,7 @@ fn erode(
     maps: &Maps,
     params: &ErosionParams,
     title: &str,
-    out: &OutDir,
+    (out, pictures): (&OutDir, &Pictures),
     console: Console,
 ) -> Result<(), Failure> {
     let mut timings = Timings::start();
@@ -283,14 +284,9 @@ fn erode(
         marks: Marks::default(),
         elapsed_yr: args.years,
     };
-    land.write(out, args.common.size, args.common.picture, &mut timings)?;
+    land.write(out, args.common.size, pictures, &mut timings)?;
     write_json(out, "report.json", &report)?;
     write_json(out, "timings.json", &timings.finish())?;
-    let shown = if args.common.picture == PictureChoice::None {
-        "report.json"
-    } else {
-        "picture.png"
-    };
-    Console::result(&out.path().join(shown).display().to_string());
+    Console::result(&out.path().join(args.common.picture.shown()).display().to_string());
     Ok(())
 }

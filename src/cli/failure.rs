@@ -23,6 +23,12 @@ impl Failure {
         Self::Input(one_line(&error.to_string()))
     }
 
+    /// No display or no graphics, and what to do.
+    #[cfg(feature = "app")]
+    pub(super) fn no_display(error: impl std::fmt::Display) -> Self {
+        Self::NoDisplay(one_line(&error.to_string()))
+    }
+
     /// Any other failure.
     pub(super) fn other(error: impl std::fmt::Display) -> Self {
         Self::Other(one_line(&error.to_string()))

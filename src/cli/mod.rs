@@ -6,6 +6,8 @@ mod erode;
 mod failure;
 mod import;
 mod output;
+#[cfg(feature = "app")]
+mod render;
 mod replay;
 #[cfg(feature = "app")]
 mod table;
@@ -85,8 +87,35 @@ struct TableArgs {
 enum PictureChoice {
     /// The relief map.
     Map,
+    /// The land at evening, seen aslant as the table shows it; needs a graphics adapter.
+    #[cfg(feature = "app")]
+    Render,
+    /// Both; where there is no graphics adapter, the map alone.
+    #[cfg(feature = "app")]
+    Both,
     /// No picture.
     None,
+}
+
+impl PictureChoice {
+    fn has_map(self) -> bool {
+        match self {
+            Self::Map => true,
+            #[cfg(feature = "app")]
+            Self::Both => true,
+            _ => false,
+        }
+    }
+
+    /// The file to name when all is done.
+    fn shown(self) -> &'static str {
+        match self {
+            Self::None => "report.json",
+            #[cfg(feature = "app")]
+            Self::Render => render::FILE,
+            _ => "picture.png",
+        }
+    }
 }
 
 /// What all commands that compute a land have in common.
@@ -223,7 +252,8 @@ struct BenchArgs {
     threads: Option<u16>,
 }
 
-/// Runs the command line and yields the exit code: 0 done, 2 bad usage or input, 1 anything else.
+/// Runs the command line and yields the exit code: 0 done, 2 bad usage or input, 3 no graphics adapter, 1
+/// anything else.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

@@ -5,11 +5,13 @@ use std::io::{self, Cursor, Write};
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use image::ImageFormat;
+use image::{ImageFormat, RgbaImage};
 use serde::Serialize;
 
 use super::PictureChoice;
 use super::failure::Failure;
+#[cfg(feature = "app")]
+use super::render;
 use crate::export::height16::Height16;
 use crate::export::{Mesh, OutDir, exr, geojson, glb, ply};
 use crate::picture::{MapStyle, relief_map};
@@ -63,6 +65,31 @@ impl Timings {
     }
 }
 
+/// The pictures that a run draws, and what it needs for them: known before the work, so that nobody waits in vain.
+pub(super) struct Pictures {
+    choice: PictureChoice,
+    #[cfg(feature = "app")]
+    gpu: Option<crate::gpu::Gpu>,
+}
+
+impl Pictures {
+    /// Fails where the rendered picture alone is wanted and nothing can draw it; warns where the map is drawn as well.
+    #[cfg_attr(
+        not(feature = "app"),
+        expect(
+            clippy::unnecessary_wraps,
+            reason = "the map needs nothing that could be missing"
+        )
+    )]
+    pub(super) fn new(choice: PictureChoice) -> Result<Self, Failure> {
+        Ok(Self {
+            choice,
+            #[cfg(feature = "app")]
+            gpu: render::adapter(choice)?,
+        })
+    }
+}
+
 /// What stands and lies on the land.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
@@ -91,7 +118,7 @@ impl LandFiles<'_> {
         self,
         out: &OutDir,
         size: u32,
-        picture: PictureChoice,
+        pictures: &Pictures,
         timings: &mut Timings,
     ) -> Result<(), Failure> {
         let title = self.title.to_owned();
@@ -103,25 +130,28 @@ impl LandFiles<'_> {
         let surface = self.surface(&mut survey);
         timings.lap("rasters");
 
-        let texture = match picture {
-            PictureChoice::None => None,
-            PictureChoice::Map => {
-                let style = MapStyle {
-                    title,
-                    ..MapStyle::default()
-                };
-                let png = map_png(&surface, &style)?;
-                out.write("picture.png", |w| w.write_all(&png))
-                    .map_err(Failure::other)?;
-                // The mesh wears the land alone, to the edge.
-                let bare = MapStyle {
-                    marks: false,
-                    lettering: false,
-                    ..MapStyle::default()
-                };
-                Some(map_png(&surface, &bare)?)
-            }
+        let texture = if pictures.choice.has_map() {
+            let style = MapStyle {
+                title,
+                ..MapStyle::default()
+            };
+            let png = map_png(&surface, &style)?;
+            out.write("picture.png", |w| w.write_all(&png))
+                .map_err(Failure::other)?;
+            // The mesh wears the land alone, to the edge.
+            let bare = MapStyle {
+                marks: false,
+                lettering: false,
+                ..MapStyle::default()
+            };
+            Some(map_png(&surface, &bare)?)
+        } else {
+            None
         };
+        #[cfg(feature = "app")]
+        if let Some(gpu) = &pictures.gpu {
+            render::write(gpu, &surface, out)?;
+        }
         timings.lap("picture");
 
         write_height_maps(out, &surface.height, &uplift_map, &surface.drainage.data)?;
@@ -174,8 +204,14 @@ fn map_png(surface: &Surface, style: &MapStyle) -> Result<Vec<u8>, Failure> {
         surface.height.width as u32,
         surface.height.height as u32,
     );
+    png(&map)
+}
+
+pub(super) fn png(image: &RgbaImage) -> Result<Vec<u8>, Failure> {
     let mut png = Cursor::new(Vec::new());
-    map.write_to(&mut png, ImageFormat::Png).map_err(Failure::other)?;
+    image
+        .write_to(&mut png, ImageFormat::Png)
+        .map_err(Failure::other)?;
     Ok(png.into_inner())
 }
 

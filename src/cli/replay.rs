@@ -8,7 +8,7 @@ use indicatif::ProgressBar;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::output::{Timings, draw_frame, land_of, write_json};
+use super::output::{Pictures, Timings, draw_frame, land_of, write_json};
 use super::{Common, PictureChoice, ReplayArgs, on_threads};
 use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
@@ -80,12 +80,13 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
         }
         sessions.push((stem, file));
     }
+    let pictures = Pictures::new(args.common.picture)?;
     on_threads(args.common.threads, || {
         for (stem, file) in &sessions {
             for warning in &file.warnings {
                 Console::warn(warning);
             }
-            play(stem, file, args, console)?;
+            play(stem, file, args, &pictures, console)?;
         }
         Ok(())
     })
@@ -131,7 +132,13 @@ fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
     Ok(Sim::new(world, params))
 }
 
-fn play(stem: &str, file: &GestureFile, args: &ReplayArgs, console: Console) -> Result<(), Failure> {
+fn play(
+    stem: &str,
+    file: &GestureFile,
+    args: &ReplayArgs,
+    pictures: &Pictures,
+    console: Console,
+) -> Result<(), Failure> {
     // The folder is tried before the work, so that a bad --out costs no waiting.
     let out = OutDir::create(args.common.out.join(stem)).map_err(Failure::input)?;
     let mut timings = Timings::start();
@@ -161,19 +168,8 @@ fn play(stem: &str, file: &GestureFile, args: &ReplayArgs, console: Console) -> 
     bar.finish_and_clear();
     timings.lap("run_on");
 
-    write_session(
-        &sim,
-        &title,
-        &out,
-        (args.common.size, args.common.picture),
-        timings,
-    )?;
-    let shown = if args.common.picture == PictureChoice::None {
-        "report.json"
-    } else {
-        "picture.png"
-    };
-    Console::result(&out.path().join(shown).display().to_string());
+    write_session(&sim, &title, &out, (args.common.size, pictures), timings)?;
+    Console::result(&out.path().join(args.common.picture.shown()).display().to_string());
     Ok(())
 }
 
@@ -182,13 +178,13 @@ pub(super) fn write_session(
     sim: &Sim,
     title: &str,
     out: &OutDir,
-    (size, picture): (u32, PictureChoice),
+    (size, pictures): (u32, &Pictures),
     mut timings: Timings,
 ) -> Result<(), Failure> {
     let flow = sim.flow();
     let report = Report::of_session(title, sim, &flow);
     let k = vec![sim.params().erosion.k; sim.world().tin.len()];
-    land_of(sim, &flow, &k, title).write(out, size, picture, &mut timings)?;
+    land_of(sim, &flow, &k, title).write(out, size, pictures, &mut timings)?;
     write_json(out, "report.json", &report)?;
     write_json(out, "timings.json", &timings.finish())?;
     if report.quarantine.steps > 0 {

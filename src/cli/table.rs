@@ -7,7 +7,7 @@ use clap::ValueEnum;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::output::Timings;
+use super::output::{Pictures, Timings};
 use super::{PictureChoice, TableArgs, replay};
 use crate::app::{self, AppError, Options, SavedLand};
 use crate::export::OutDir;
@@ -65,12 +65,13 @@ fn save_land(land: &SavedLand, path: &Path) -> Result<(), Failure> {
     let timings = Timings::start();
     let out = OutDir::create(path).map_err(Failure::input)?;
     let sim = Sim::resume(land.clone());
-    replay::write_session(&sim, SAVED_TITLE, &out, (SAVED_SIZE, PictureChoice::Map), timings)
+    let pictures = Pictures::new(PictureChoice::Map)?;
+    replay::write_session(&sim, SAVED_TITLE, &out, (SAVED_SIZE, &pictures), timings)
 }
 
 fn failure(error: AppError) -> Failure {
     match error {
-        AppError::NoDisplay(why) | AppError::NoGraphics(why) => Failure::NoDisplay(format!(
+        AppError::NoDisplay(why) | AppError::NoGraphics(why) => Failure::no_display(format!(
             "{why}; start it where a display is, or use `orogen replay`, which needs none"
         )),
         AppError::Settings(_) | AppError::File(..) => Failure::input(error),

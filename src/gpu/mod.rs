@@ -6,10 +6,6 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Interfaces that are asked first (Vulkan or the system's own), and the one that is asked if they have nothing. Each
-/// has an instance of its own: GL is not even woken where it is not needed.
-pub const INTERFACES: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
-
 /// Devices made so far in this process.
 static GENERATIONS: AtomicU64 = AtomicU64::new(0);
 
@@ -47,16 +43,31 @@ pub struct Gpu {
     fault: Arc<Mutex<Option<String>>>,
 }
 
-/// An entry to some interfaces of this machine, one of [`INTERFACES`], as far as `WGPU_BACKEND` allows them. GL can show
-/// pictures only on the `display` that is named here.
-pub fn instance(
-    interfaces: wgpu::Backends,
-    display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>,
-) -> wgpu::Instance {
-    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: descriptor.backends & interfaces,
+/// What a window system lends, so that a picture can be shown on it.
+pub type Display = Box<dyn wgpu::wgt::WgpuHasDisplayHandle>;
+
+/// An entry to the interfaces of this machine that are asked first: Vulkan, Metal, DirectX 12.
+///
+/// A window's surface must be made by the instance that its device comes from.
+pub fn instance(display: Option<Display>) -> wgpu::Instance {
+    entry(wgpu::Backends::PRIMARY, display)
+}
+
+/// An entry to OpenGL, for machines where [`instance`] finds nothing: it is slow to ask and talks on standard error.
+/// It can show pictures only on the `display` that is named here.
+pub fn fallback_instance(display: Option<Display>) -> wgpu::Instance {
+    entry(wgpu::Backends::GL, display)
+}
+
+/// `WGPU_BACKEND` may name fewer interfaces.
+fn entry(backends: wgpu::Backends, display: Option<Display>) -> wgpu::Instance {
+    let descriptor = wgpu::InstanceDescriptor {
         display,
+        ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+    };
+    let backends = descriptor.backends & backends;
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
         ..descriptor
     })
 }
@@ -67,31 +78,27 @@ impl Gpu {
     /// # Errors
     /// When no adapter gives a device.
     pub fn offscreen() -> Result<Self, GpuError> {
-        let mut found = Err(GpuError::NoAdapter("none was asked".to_owned()));
-        for interfaces in INTERFACES {
-            found = Self::find(&instance(interfaces, None), None);
-            if found.is_ok() {
-                break;
-            }
-        }
-        found
+        Self::find(&instance(None), None).or_else(|first| {
+            // What the better interfaces said tells more than that OpenGL has nothing either.
+            Self::find(&fallback_instance(None), None).map_err(|_| first)
+        })
     }
 
-    /// The best device that can draw into `surface`.
+    /// The best device that can draw into `surface`, which `instance` made.
     ///
     /// # Errors
-    /// When no adapter can.
+    /// When no adapter of `instance` can; then try again with a surface of [`fallback_instance`].
     pub fn for_window(instance: &wgpu::Instance, surface: &wgpu::Surface<'_>) -> Result<Self, GpuError> {
         Self::find(instance, Some(surface))
     }
 
     fn find(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self, GpuError> {
+        let mut fault = GpuError::NoAdapter("none answers".to_owned());
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
         if let Some(surface) = surface {
             adapters.retain(|adapter| adapter.is_surface_supported(surface));
         }
         adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-        let mut fault = GpuError::NoAdapter("none answers".to_owned());
         for adapter in adapters {
             match Self::open(adapter) {
                 Ok(gpu) => return Ok(gpu),
