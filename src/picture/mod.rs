@@ -18,6 +18,7 @@ mod style;
 pub(crate) mod water;
 
 pub use frame::MapFrame;
+#[cfg(feature = "app")]
 pub(crate) use lettering::round_below;
 pub use style::MapStyle;
 
