@@ -1,9 +1,10 @@
 //! Draws a gesture file's land with the table's own renderer, to judge its looks without a window.
 //!
-//! `cargo run --example render_preview -- GESTURES OUT VIEWS [WIDTHxHEIGHT] [NODES] [YEARS] [COLUMNS]`
+//! `cargo run --example render_preview -- GESTURES OUT VIEWS [WIDTHxHEIGHT] [NODES] [YEARS] [COLUMNS] [QUALITY]`
 //!
 //! Views are separated by spaces and written to `OUT-0.png`, `OUT-1.png` …: `plan`; `flight:SECONDS`; `way:T`, the
 //! eye at `T` (0 to 1) of its way from the plan into the flight; `AZIMUTH,DEPRESSION,KM` about the flight's focus.
+//! Qualities are `picture`, `high` and `software`.
 
 #![expect(clippy::print_stdout, reason = "a tool for the terminal")]
 
@@ -34,13 +35,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         argument(5, "5e6").parse()?,
         argument(6, "1024").parse()?,
     )?;
+    let quality = match &*argument(7, "picture") {
+        "picture" => RenderQuality::PICTURE,
+        "high" => RenderQuality::HIGH,
+        "software" => RenderQuality::SOFTWARE,
+        other => return Err(format!("{other}: expected picture, high or software").into()),
+    };
     let gpu = Gpu::offscreen()?;
     let style = LandStyle::default();
     for (number, view) in argument(2, "plan flight:0").split_whitespace().enumerate() {
         let camera = eye(view, &surface, &style, DVec2::new(width, height))?;
         let began = Instant::now();
         let path = format!("{}-{number}.png", argument(1, "render"));
-        picture(&gpu, &surface, &camera, &style, RenderQuality::PICTURE)?.save(&path)?;
+        picture(&gpu, &surface, &camera, &style, quality)?.save(&path)?;
         let taken = began.elapsed().as_secs_f64() * 1e3;
         println!("{path}: {view} on {} in {taken:.0} ms", gpu.info.name);
     }

@@ -234,7 +234,7 @@ impl Hud {
             .iter()
             .any(|&side| table.instrument().tool(side) == Tool::Edit)
             || frame.clock.paused;
-        let ink = (1.0 - 0.75 * aloft) as f32;
+        let ink = (1.0 - aloft) as f32;
         self.chart
             .draw(&painter, on_land, ink, editing.then_some(&edits[..]), now_s);
         if let Some(hint) = table.kiosk().hint() {

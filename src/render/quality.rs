@@ -37,8 +37,8 @@ impl RenderQuality {
     };
     /// For processor cores that also run the simulation.
     pub const SOFTWARE: Self = Self {
-        mesh_columns: 192,
-        mesh_gathering: 4.0,
+        mesh_columns: 160,
+        mesh_gathering: 4.5,
         light: LightQuality {
             sun_steps: 14,
             sky_directions: 6,
