@@ -149,6 +149,9 @@ fn an_edit_in_the_past_drops_what_came_after() {
     play(&mut sim, [order(4300, Action::Remove { at })], 4400);
     assert!(sim.world().plates.plates().is_empty());
     assert_eq!(sim.history_yr().1, early_yr, "another future begins");
+    // The edit is undone first.
+    play(&mut sim, [order(4430, Action::Undo)], 4460);
+    assert_eq!(sim.world().plates.plates().len(), 1);
     // The second push never was; the first is still there to be undone.
     play(&mut sim, [order(4500, Action::Undo)], 4600);
     assert!(sim.world().time_yr < early_yr);
@@ -171,6 +174,24 @@ fn undo_in_the_past_takes_back_what_was_before_it() {
         !sim.can_undo(Side::South),
         "the second one is of a future that is gone"
     );
+}
+
+#[test]
+fn undo_after_a_look_back_in_a_land_that_was_started_over() {
+    let mut sim = sim();
+    play(&mut sim, drag(1, WEST, 100), 3000);
+    play(&mut sim, [order(3016, Action::StartOver)], 3100);
+    play(&mut sim, drag(2, EAST, 3200), 5000);
+    play(&mut sim, [order(5016, Action::Scrub(0.1e6))], 5100);
+    // Older land is later in the list than the time that is looked back to; what is undone is what this land knows.
+    play(&mut sim, [order(5200, Action::Undo)], 5300);
+    assert!(sim.world().z.iter().all(|z| z.is_finite()));
+    play(
+        &mut sim,
+        [order(5400, Action::Undo), order(5416, Action::Undo)],
+        5500,
+    );
+    assert!(!sim.can_undo(Side::South));
 }
 
 #[test]

@@ -40,10 +40,14 @@ impl Sim {
     /// Brings back land, plates and time as the last push of `side` (of anybody, if `None`) found them. Pushes
     /// that came after it are gone too.
     pub fn undo(&mut self, side: Option<Side>) -> bool {
+        if self.undoable(side).is_none() {
+            return false;
+        }
+        self.depart(self.state.world.time_yr);
+        // Looked for again: what the land has departed from is gone from the list.
         let Some(index) = self.undoable(side) else {
             return false;
         };
-        self.depart(self.state.world.time_yr);
         let state = &mut self.state;
         state.world.clone_from(&state.undo[index].world);
         if state.undo[index..].iter().any(|s| s.starts_over) {
