@@ -60,17 +60,17 @@ fn two_hands_raise_a_range() {
         changed > 3.0 * SEEN,
         "between the hands the picture changed by {changed:.1}"
     );
-    for (x, y) in [(0.06, 0.2), (0.06, 0.5), (0.06, 0.8), (0.94, 0.5)] {
+    for (x, y) in [(0.06, 0.15), (0.06, 0.8), (0.94, 0.15), (0.94, 0.5)] {
         let far = table.at(x, y);
-        let changed = touched.difference(&untouched, far, 40);
+        let noise = touched.difference(&untouched, far, 40);
         assert!(
-            changed < SEEN,
-            "far from the hands the picture changed by {changed:.1} at {far:?}"
+            noise < changed / 4.0,
+            "between the hands the picture changed by {changed:.1}, and by {noise:.1} at {far:?}"
         );
-        let changed = risen_land.changed(&land, far, 40.0);
+        let moved = risen_land.changed(&land, far, 40.0);
         assert!(
-            changed < 100.0,
-            "far from the hands the land changed by {changed:.0} m at {far:?}"
+            moved < 100.0,
+            "far from the hands the land changed by {moved:.0} m at {far:?}"
         );
     }
 }
