@@ -202,6 +202,7 @@ fn commands_edit_standing_plates() {
     assert!(sim.world().plates.plates().is_empty());
     play(&mut sim, vec![command(2_100_000, Action::StartOver)], 2200);
     assert_eq!(sim.world().time_yr, 0.0);
+    assert!(sim.fault_traces().is_empty(), "fresh land has no faults");
     play(&mut sim, vec![command(2_300_000, Action::Earth)], 2400);
     assert_eq!(
         sim.counts().idle_commands,

@@ -390,7 +390,8 @@ impl Instrument {
         }
         if let Some(press) = self.presses.remove(&id)
             && lifted
-            && press.acts_on_lift(id.1)
+            // Between two looks of a slow machine it may have been held long enough.
+            && (press.acts_on_lift(id.1) || press.held_long_enough(id.1, self.now_us))
         {
             self.act(id, finger);
         }

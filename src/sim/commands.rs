@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::drive::Uplift;
 use super::step::{Sim, Snapshot};
 use super::world::Totals;
 use crate::gesture::command::{Action, Command};
 use crate::gesture::contact::Side;
-use crate::mountain::PlateSet;
 use crate::mountain::strata::Strata;
+use crate::mountain::{PlateSet, TectonicField};
 use crate::terrain::StartLand;
 use crate::units::MYR;
 
@@ -73,6 +74,9 @@ impl Sim {
 
     /// Another land has taken the place of the one before.
     fn land_changed(&mut self) {
+        // Faults of the other land are no past of this one.
+        let still = TectonicField::still(self.state.world.map.extent(), &self.params.mountain);
+        self.state.uplift = Arc::new(Uplift::still(&still, self.state.world.tin.len()));
         self.state.pending_yr = 0.0;
         self.state.stale = true;
         self.wear.forget();
