@@ -44,6 +44,14 @@ impl Governor {
         }
     }
 
+    /// Begins low, for machines that are known to be slow: nobody has to wait until it has come down.
+    pub(super) fn low(wanted_ms: f64) -> Self {
+        Self {
+            step: 1,
+            ..Self::new(wanted_ms)
+        }
+    }
+
     /// The resolution, as a part of the window's.
     pub(super) fn scale(&self) -> f32 {
         SCALES[self.step]
@@ -129,6 +137,14 @@ mod tests {
         // It tries one step more now and then, more and more rarely.
         let tries = run(&mut governor, 20_000, 30.0);
         assert!(tries <= 12, "{tries}");
+    }
+
+    #[test]
+    fn one_that_begins_low_comes_up_where_there_is_time() {
+        let mut governor = Governor::low(50.0);
+        assert!(governor.scale() < 0.7);
+        run(&mut governor, 10_000, 12.0);
+        assert_eq!(governor.scale(), 1.0);
     }
 
     #[test]

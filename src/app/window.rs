@@ -125,7 +125,11 @@ impl Program {
             graphics,
             table,
             hud,
-            governor: Governor::new(if software { SOFTWARE_MS } else { HARDWARE_MS }),
+            governor: if software {
+                Governor::low(SOFTWARE_MS)
+            } else {
+                Governor::new(HARDWARE_MS)
+            },
             scale: 1.0,
             touch_devices: BTreeMap::new(),
             modifiers: ModifiersState::default(),
