@@ -9,6 +9,7 @@ use super::save::Saver;
 use super::setup::{door_params, grounded, instrument_params, nodes, raster_width, window_map};
 use super::{AppError, Options};
 use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase};
+use crate::gesture::hand::{Doing, HandView};
 use crate::input::window::{TouchPhase, WindowInput};
 use crate::instrument::{Deed, Instrument, Key, Route, Scene};
 use crate::kiosk::{DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor};
@@ -110,8 +111,6 @@ pub(super) struct Table {
     cleaning_until_us: u64,
     /// When each contact that is down landed.
     since_us: BTreeMap<ContactKey, u64>,
-    /// Pushes of the session when the phase began.
-    pushes: u64,
     pub(super) layout_told: Option<(DVec2, bool)>,
 }
 
@@ -166,7 +165,6 @@ impl Table {
             now_us: 0,
             cleaning_until_us: 0,
             since_us: BTreeMap::new(),
-            pushes: 0,
             layout_told: None,
         })
     }
@@ -420,12 +418,12 @@ impl Table {
         self.carry_out_deeds(now_us);
         self.session.advance(now_us);
         self.session.frame();
-        let pushes = self.frame().contacts.pushes;
-        if pushes > self.pushes && !self.show.playing() {
+        // (Counts would not do: those of the session before may be in the frame still.)
+        let pushing = |hand: &HandView| matches!(hand.doing, Doing::Pushing { .. });
+        if self.frame().hands.iter().any(pushing) && !self.show.playing() {
             self.kiosk.pushed(now_ms);
             self.carry_out(now_us);
         }
-        self.pushes = pushes;
         self.wishes_fly = show.fly;
         self.turn_view(now_us);
         self.look(settings, dt_s);
@@ -509,7 +507,6 @@ impl Table {
                 Effect::FreshLand => {
                     self.visitors += 1;
                     self.session.restart(Start::Seed(self.visitors));
-                    self.pushes = 0;
                 }
                 Effect::ResetTools => self.instrument.reset(),
                 Effect::ResetView => self.flight = self.grounded.clone(),
