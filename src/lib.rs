@@ -9,6 +9,7 @@
 //! | module | what it does | what it must not know |
 //! |---|---|---|
 //! | [`units`] | frames and quantities; converts table mm ↔ plan m | anything |
+//! | [`rock`] | layers of rock, their column at a place, named piles | anything |
 //! | [`gesture`] | contacts → strokes → hands → rigid fit; the gesture file | worlds, window, clock, files |
 //! | [`mountain`] | plates, transport, compression, fault, uplift, strata of the flat world | window, files, who owns it |
 //! | [`terrain`] | TIN, flow routing with lakes, stream power, landslides | plates, gestures, window |
@@ -47,6 +48,8 @@
 //! * Another solver of the land works on [`terrain::Tin`] and [`terrain::Forcing`].
 
 pub mod units;
+
+pub mod rock;
 
 pub mod gesture;
 

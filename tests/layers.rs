@@ -24,6 +24,18 @@ const RULES: &[Rule] = &[
         reason: "frames and quantities know nothing",
     },
     Rule {
+        module: "rock",
+        forbidden: &[
+            "crate::gesture",
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::surface",
+            "crate::picture",
+        ],
+        reason: "a pile of rock knows no world",
+    },
+    Rule {
         module: "gesture",
         forbidden: &[
             "crate::mountain",

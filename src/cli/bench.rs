@@ -276,6 +276,7 @@ impl Bench {
             rivers: Vec::new(),
             plates: Vec::new(),
             faults: Vec::new(),
+            strata: None,
             elapsed_yr: 0.0,
         };
         self.time(("relief_map", 1920 * 1080, "–"), None, 3, || {
@@ -365,6 +366,7 @@ fn mountains(width: usize, height: usize) -> Surface {
         rivers: (0..120).map(river).collect(),
         plates: Vec::new(),
         faults: Vec::new(),
+        strata: None,
         elapsed_yr: 5e6,
     }
 }

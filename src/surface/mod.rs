@@ -3,11 +3,15 @@
 //! Nothing here knows how the land was made. Everything is in the plan frame (metres, x east, y north).
 
 pub mod rivers;
+mod strata;
+
+use std::sync::Arc;
 
 use glam::DVec2;
 
 use crate::units::Extent;
 pub use rivers::{River, RiverPoint};
+pub use strata::StrataMap;
 
 /// A field on a regular grid of square cells over an [`Extent`]. Row 0 is the northernmost, values sit at cell
 /// centres (pixel = area).
@@ -120,6 +124,8 @@ pub struct Surface {
     pub plates: Vec<PlateMark>,
     /// Faults between plates.
     pub faults: Vec<FaultTrace>,
+    /// The layers under it; `None` where nothing is known of them. Shared, because frames circulate.
+    pub strata: Option<Arc<StrataMap>>,
     /// Model time since the land was new, years.
     pub elapsed_yr: f64,
 }

@@ -111,6 +111,7 @@ impl Survey {
             rivers: Vec::new(),
             plates: Vec::new(),
             faults: Vec::new(),
+            strata: None,
             elapsed_yr: 0.0,
         }
     }
