@@ -1,4 +1,4 @@
-//! Transport at 1024² cells with three plates, and the whole way from a changed gesture to a new uplift.
+//! Transport at 1024² cells with three plates, the whole way from a changed gesture to a new uplift, and folds.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec2;
@@ -6,11 +6,13 @@ use orogen::gesture::contact::Side;
 use orogen::gesture::event::{HandEvent, HandId, Leg};
 use orogen::gesture::rigid::RigidFit;
 use orogen::mountain::compression::CompressionField;
+use orogen::mountain::fold::lines::troughs;
+use orogen::mountain::fold::{FoldDrive, FoldMesh, FoldRates, FoldShape, Skeleton};
 use orogen::mountain::transport::{
     CpuTransport, MovedBody, TransportField, TransportProblem, TransportStage,
 };
-use orogen::mountain::{Grid, MountainParams, PlateSet, TectonicField, Tectonics};
-use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
+use orogen::mountain::{Field, Grid, MountainParams, PlateSet, TectonicField, Tectonics};
+use orogen::units::{DEFAULT_SHORT_SIDE, Extent, KM, PlanMap};
 
 /// Five fingertips around a point, km.
 const HAND: [[f64; 2]; 5] = [[-9.0, -4.0], [-5.5, 6.0], [0.0, 8.5], [5.0, 7.0], [9.0, 1.0]];
@@ -110,9 +112,47 @@ fn stages(criterion: &mut Criterion) {
     });
 }
 
+/// Skeletons at the sizes of the literature, and heights on 1024² cells.
+fn folds(criterion: &mut Criterion) {
+    let square = Extent {
+        width: 100.0 * KM,
+        height: 100.0 * KM,
+    };
+    let grid = Grid::over(square, 1024 * 1024);
+    let drive = FoldDrive::uniform(grid.blocks(), 3e-4, 0.4);
+    for wavelength in [7.0, 3.0, 1.0] {
+        let mesh = FoldMesh::new(square, wavelength * KM, 1).expect("a mesh");
+        let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
+        let lines = skeleton.top_len() + troughs(&mesh, &skeleton).len();
+        criterion.bench_function(&format!("fold-skeletons/{lines}-lines"), |b| {
+            b.iter(|| {
+                let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
+                (troughs(&mesh, &skeleton), skeleton)
+            });
+        });
+        let shape = FoldShape::new(&mesh, &skeleton);
+        criterion.bench_function(&format!("fold-index/{lines}-lines"), |b| {
+            b.iter(|| FoldShape::new(&mesh, &skeleton));
+        });
+        let mut heights = Vec::new();
+        criterion.bench_function(&format!("fold-heights/1024x1024/{wavelength}-km"), |b| {
+            b.iter(|| shape.on_grid(grid, &mut heights));
+        });
+        let rates = FoldRates {
+            drive: &drive,
+            share: 0.5,
+            edits: &[],
+        };
+        let mut field = Field::constant(grid.blocks(), 0.0);
+        criterion.bench_function(&format!("fold-rates/256x256/{wavelength}-km"), |b| {
+            b.iter(|| shape.rates_on_grid(&rates, grid.blocks(), &mut field));
+        });
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = stages
+    targets = stages, folds
 }
 criterion_main!(benches);

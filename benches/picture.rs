@@ -38,6 +38,7 @@ fn surface(width: usize, height: usize) -> Surface {
         rivers: (0..250).map(river).collect(),
         plates: Vec::new(),
         faults: Vec::new(),
+        folds: Vec::new(),
         strata: None,
         elapsed_yr: 5e6,
     }

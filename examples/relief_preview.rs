@@ -97,6 +97,7 @@ fn range(nodes: usize, elapsed_yr: f64, width: usize, height: usize) -> Result<S
             plate(128.0 * KM, -16.0 * KM, PlateState::Pushing),
         ],
         faults: vec![fault()],
+        folds: Vec::new(),
         strata: None,
         elapsed_yr,
     })

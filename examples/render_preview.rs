@@ -1,23 +1,29 @@
 //! Draws a gesture file's land with the table's own renderer, to judge its looks without a window.
 //!
-//! `cargo run --example render_preview -- GESTURES OUT VIEWS [WIDTHxHEIGHT] [NODES] [YEARS] [COLUMNS] [QUALITY]`
+//! `cargo run --example render_preview -- GESTURES OUT VIEWS [WIDTHxHEIGHT] [NODES] [YEARS] [COLUMNS] [QUALITY] [PILE]
+//! [FOLDS]`
 //!
 //! Views are separated by spaces and written to `OUT-0.png`, `OUT-1.png` …: `plan`; `flight:SECONDS`; `way:T`, the
 //! eye at `T` (0 to 1) of its way from the plan into the flight; `AZIMUTH,DEPRESSION,KM` about the flight's focus.
-//! Qualities are `picture`, `high` and `software`.
+//! Qualities are `picture`, `high` and `software`; a view that ends with `!` is drawn in the geological map's colours.
+//! `FOLDS`, metres, bends the layers of the finished land into waves of that height, as a painter's dummy: the land was
+//! not eroded along them.
 
 #![expect(clippy::print_stdout, reason = "a tool for the terminal")]
 
 use std::error::Error;
+use std::f64::consts::TAU;
 use std::fs::File;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
 use orogen::gesture::file::read_gesture;
 use orogen::gpu::Gpu;
 use orogen::render::{Camera, Focus, LandStyle, Oblique, RenderQuality, flight, picture};
+use orogen::rock::preset;
 use orogen::sim::{Sim, SimParams, World};
-use orogen::surface::Surface;
+use orogen::surface::{Raster, Surface};
 use orogen::survey::{Ground, Survey};
 use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
 
@@ -34,7 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         argument(4, "60000").parse()?,
         argument(5, "5e6").parse()?,
         argument(6, "1024").parse()?,
+        &argument(8, "plain"),
     )?;
+    let surface = folded(surface, argument(9, "0").parse()?);
     let quality = match &*argument(7, "picture") {
         "picture" => RenderQuality::PICTURE,
         "high" => RenderQuality::HIGH,
@@ -42,8 +50,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         other => return Err(format!("{other}: expected picture, high or software").into()),
     };
     let gpu = Gpu::offscreen()?;
-    let style = LandStyle::default();
     for (number, view) in argument(2, "plan flight:0").split_whitespace().enumerate() {
+        let (view, geology) = view.strip_suffix('!').map_or((view, 0.0), |view| (view, 1.0));
+        let style = LandStyle {
+            geology,
+            ..LandStyle::default()
+        };
         let camera = eye(view, &surface, &style, DVec2::new(width, height))?;
         let began = Instant::now();
         let path = format!("{}-{number}.png", argument(1, "render"));
@@ -55,14 +67,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// What the session of a gesture file yields.
-fn land(path: &str, nodes: usize, years: f64, columns: usize) -> Result<Surface, Box<dyn Error>> {
+fn land(path: &str, nodes: usize, years: f64, columns: usize, pile: &str) -> Result<Surface, Box<dyn Error>> {
     let file = read_gesture(File::open(path)?, path)?;
     let params = SimParams {
         run_on_yr: years,
         ..SimParams::default()
     };
     let map = PlanMap::new(file.header.size_mm, DEFAULT_SHORT_SIDE);
-    let world = World::new(map, nodes, file.header.seed.unwrap_or(1))?;
+    let mut world = World::new(map, nodes, file.header.seed.unwrap_or(1))?;
+    world.stratigraphy = preset::by_name(pile).ok_or_else(|| format!("{pile}: no such pile"))?;
     let mut sim = Sim::new(world, params);
     for frame in file.frames {
         sim.feed(frame);
@@ -78,7 +91,28 @@ fn land(path: &str, nodes: usize, years: f64, columns: usize) -> Result<Surface,
         z: &sim.world().z,
         flow: &flow,
     };
-    Ok(Survey::new(tin, columns).surface(ground, sim.world().time_yr))
+    let mut survey = Survey::new(tin, columns);
+    let mut surface = survey.surface(ground, sim.world().time_yr);
+    survey.draw_layers(&sim.underground(), &mut surface);
+    Ok(surface)
+}
+
+/// The land with its layers bent into waves of that height, metres, seven kilometres long.
+fn folded(mut surface: Surface, metres: f64) -> Surface {
+    if let Some(map) = &mut surface.strata
+        && metres > 0.0
+    {
+        let map = Arc::make_mut(map);
+        let extent = map.depth.extent;
+        let waves = Raster::from_fn(map.depth.width, map.depth.height, extent, |p| {
+            let bend = 900.0 * (p.y / (11.0 * KM)).sin();
+            (metres * (0.5 + 0.5 * ((p.x + bend) / (7.0 * KM) * TAU).cos())) as f32
+        });
+        for (depth, wave) in map.depth.data.iter_mut().zip(waves.data) {
+            *depth += wave;
+        }
+    }
+    surface
 }
 
 /// The eye that `view` names.

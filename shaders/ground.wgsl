@@ -29,6 +29,10 @@ struct Ground {
     ramp_high: f32,
     // 1 if the land is also lit for the view aslant.
     aslant: f32,
+    // Thickness of the pile of layers, metres; 0 where nothing is known of it.
+    pile: f32,
+    // Share of the geological map's colours, 0 to 1.
+    geology: f32,
 }
 
 @group(0) @binding(0) var<uniform> ground: Ground;

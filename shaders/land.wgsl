@@ -31,6 +31,8 @@ struct View {
     encodes: f32,
     // Share of the evening's colours, 0 to 1.
     dusk: f32,
+    // 1 if the layers under the land are known.
+    layered: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -39,6 +41,9 @@ struct View {
 @group(0) @binding(3) var stand: texture_2d<f32>;
 @group(0) @binding(4) var<uniform> air: Air;
 @group(0) @binding(5) var evening_sheet: texture_2d<f32>;
+// Place in the pile of layers of the rock at the surface, less a half.
+@group(0) @binding(6) var rock: texture_2d<f32>;
+@group(0) @binding(7) var pile: texture_2d_array<f32>;
 
 // Colours of the air, in linear light.
 struct Air {
@@ -180,11 +185,41 @@ fn outside(uv: vec2<f32>) -> f32 {
     return length((uv - clamp(uv, vec2<f32>(0.0), vec2<f32>(1.0))) * view.extent);
 }
 
+// The rock between texels; beyond the border as in a mirror. By loads, which cost software less.
+fn rock_between(uv: vec2<f32>) -> f32 {
+    let last = vec2<i32>(textureDimensions(rock)) - 1;
+    let mirrored = 1.0 - abs(1.0 - abs(uv));
+    let at = clamp(mirrored * vec2<f32>(last + 1) - 0.5, vec2<f32>(0.0), vec2<f32>(last));
+    let low = vec2<i32>(at);
+    let high = min(low + 1, last);
+    let part = at - vec2<f32>(low);
+    return mix(mix(textureLoad(rock, low, 0).x, textureLoad(rock, vec2<i32>(high.x, low.y), 0).x, part.x),
+               mix(textureLoad(rock, vec2<i32>(low.x, high.y), 0).x, textureLoad(rock, high, 0).x, part.x), part.y);
+}
+
+// How the bed that crops out differs from its layer. Where a neighbouring pixel is not rock, and its place unknown, there
+// is hardly any rock here either.
+fn bed(uv: vec2<f32>) -> vec3<f32> {
+    let place = rock_between(uv);
+    let level = pile_level(length(vec2<f32>(dpdx(place), dpdy(place))));
+    return 2.0 * pile_look(pile, BEDS, place + 0.5, level).rgb;
+}
+
 // The land at evening: what lies there, seen through air.
 fn evening(point: MeshPoint, uv: vec2<f32>) -> vec3<f32> {
     // What stands in the mirror is dim.
     let roots = textureSampleBias(evening_sheet, sheet_sampler, uv, min(outside(uv) / 9000.0, 4.0));
-    let colour = mix(roots.rgb * roots.rgb, point.mirrored.rgb, roots.a * point.mirrored.a);
+    var lying = roots.rgb * roots.rgb;
+    var water = roots.a;
+    if view.layered > 0.5 {
+        // Above a half water, below it bare rock.
+        water = max(2.0 * roots.a - 1.0, 0.0);
+        let bare = 1.0 - 2.0 * roots.a;
+        if bare > 0.02 {
+            lying *= mix(vec3<f32>(1.0), bed(uv), bare);
+        }
+    }
+    let colour = mix(lying, point.mirrored.rgb, water * point.mirrored.a);
     return colour * point.air.a + point.air.rgb;
 }
 

@@ -11,6 +11,9 @@
 // Colours by height, linear, one row each: open ground (by height over the plains), wood, rock.
 @group(0) @binding(9) var ramps: texture_2d<f32>;
 @group(0) @binding(10) var meadows: texture_2d<f32>;
+// Place in the pile of layers of the rock at the surface, less a half; thickness of the sediment on it, metres.
+@group(0) @binding(11) var layers: texture_2d<f32>;
+@group(0) @binding(12) var pile: texture_2d_array<f32>;
 
 // Colours of light. Flat open ground receives exactly white.
 const SUN = vec3<f32>(1.0, 0.93, 0.77);
@@ -75,13 +78,13 @@ fn ramp(row: i32, height: f32) -> vec3<f32> {
     return textureLoad(ramps, vec2<i32>(i32(part * (RAMP_STEPS - 1.0) + 0.5), row), 0).rgb;
 }
 
-// Slope and profile of gullies down the slope, each generation running into the one before.
-fn carve(plan: vec2<f32>, down: vec2<f32>, steep: f32, texel: f32) -> vec3<f32> {
+// Slope, profile and height (metres) of gullies down the slope, each generation running into the one before.
+fn carve(plan: vec2<f32>, down: vec2<f32>, steep: f32, texel: f32) -> vec4<f32> {
     var way = -down / max(steep, 1e-6);
     var wavelength = 2.0 * ground.spacing;
     let carving = 0.55 + 0.45 * gradient(plan / (5.0 * wavelength), 0x51u);
     var strength = 0.55 * carving * min(steep, 1.0) * smoothstep(0.08, 0.40, steep);
-    var carved = vec3<f32>(0.0);
+    var carved = vec4<f32>(0.0);
     var share = 0.6;
     let generations = select(0, GULLIES, steep > 0.06);
     for (var generation = 0; generation < generations; generation++) {
@@ -90,13 +93,50 @@ fn carve(plan: vec2<f32>, down: vec2<f32>, steep: f32, texel: f32) -> vec3<f32> 
         }
         let profile = gullies(plan / wavelength, way, 0x9d1u + u32(generation));
         let sideways = vec2<f32>(-way.y, way.x);
-        carved += vec3<f32>(strength * profile.y * sideways, share * profile.x);
+        carved += vec4<f32>(strength * profile.y * sideways, share * profile.x, 0.25 * wavelength * strength * profile.x);
         way = normalize(way - 0.7 * profile.y * sideways);
         wavelength *= 0.5;
         strength *= 0.6;
         share *= 0.6;
     }
     return carved;
+}
+
+// The rock that crops out at a texel.
+struct Rock {
+    // Place in the pile.
+    place: f32,
+    // How much of the pile lies between this texel and the next.
+    per_texel: f32,
+    // How the bed differs from its layer, and how hard it is, -1 to 1.
+    bed: vec3<f32>,
+    hardness: f32,
+    // What its layer is made of.
+    stone: vec3<f32>,
+}
+
+// `smooth_place`: the place in the pile under the land without its gullies, less a half, and `change` how much it changes
+// from this texel to the next; `raised`: what the gullies add to the height, metres, and `rough` from texel to texel.
+fn rock_at(smooth_place: f32, change: f32, raised: f32, rough: f32) -> Rock {
+    // The layers do not follow the gullies, which cut into them: in a gully the rock is older.
+    let place = smooth_place + 0.5 - raised / ground.pile;
+    let per_texel = change + rough / ground.pile;
+    let look = pile_look(pile, BEDS, place, pile_level(per_texel));
+    // Layers pass into each other over some more, and weather towards grey.
+    let roots = pile_look(pile, STONE, place, pile_level(2.0 * per_texel)).rgb;
+    let stone = roots * roots;
+    let grey = dot(stone, vec3<f32>(0.30, 0.59, 0.11));
+    return Rock(place, per_texel, 2.0 * look.rgb, 2.0 * look.a - 1.0, 0.9 * mix(stone, vec3<f32>(grey), 0.20));
+}
+
+// The geological map: layers in their colours, sediment in that of the youngest, boundaries in ink.
+fn chart(rock: Rock, sediment: f32) -> vec3<f32> {
+    let level = pile_level(0.5 * rock.per_texel);
+    let here = pile_look(pile, CHART, rock.place, level).rgb;
+    let above = pile_look(pile, CHART, rock.place - rock.per_texel, level).rgb;
+    let ink = smoothstep(0.02, 0.25, length(here - above));
+    let paper = mix(here * here, vec3<f32>(1.0), 0.30) * (1.0 - 0.5 * ink);
+    return mix(paper, ALLUVIUM, 0.9 * smoothstep(3.0, 12.0, sediment));
 }
 
 // The land at a texel, as light finds it.
@@ -118,6 +158,10 @@ struct Lain {
     shore: f32,
     depth: f32,
     river: f32,
+    // How much of it is bare rock, how its bed differs from its layer, and its place in the pile, less a half.
+    bare: f32,
+    bed: vec3<f32>,
+    place: f32,
 }
 
 fn lain(position: vec2<f32>) -> Lain {
@@ -185,15 +229,47 @@ fn lain(position: vec2<f32>) -> Lain {
     let alpine = smoothstep(ground.tree_line - 200.0, ground.tree_line + 500.0, height + 260.0 * border);
     let scree = alpine * smoothstep(0.42, 0.66, steepness + 0.12 * fine) * 0.6;
     colour = mix(colour, SCREE, scree);
-    let bare = smoothstep(0.74 - 0.20 * alpine, 1.02 - 0.20 * alpine, steepness + 0.10 * fine + 0.10 * convexity);
+    var stands = steepness + 0.10 * fine + 0.10 * convexity;
+    var stone = ramp(ROCK, height);
+    var shown = 0.55 + 0.45 * alpine;
+    var rock = Rock(0.5, 0.0, vec3<f32>(1.0), 0.0, stone);
+    var sediment = 0.0;
+    if ground.pile > 0.0 {
+        let under = textureSampleLevel(layers, smooth_sampler, uv, 0.0).xy;
+        let change = length(vec2<f32>(dpdx(under.x), dpdy(under.x)));
+        sediment = under.y;
+        // Thick sediment lies flat: gravel before mountains, meadows farther out.
+        let flat = smoothstep(3.0, 10.0, sediment) * (1.0 - smoothstep(0.05, 0.14, steepness));
+        let gravel = smoothstep(0.01, 0.08, form_steepness) * (0.6 + 0.25 * fine);
+        colour = mix(colour, mix(WATER_MEADOW, ALLUVIUM, 0.45 + 0.4 * gravel), 0.5 * flat * (1.0 - wood));
+        if steepness > 0.22 || ground.geology > 0.0 {
+            // Where beds are seen, a linear look would show the cells.
+            var place = under.x;
+            if steepness > 0.4 {
+                place = spline(layers, uv).x;
+            }
+            rock = rock_at(place, change, carved.w, texel * length(carved.xy));
+            // Hard beds stand out of meadows and woods, weak ones are grown over.
+            stands += 0.14 * rock.hardness;
+            shown = 0.78 + 0.22 * alpine;
+            stone = mix(stone, rock.stone, 0.72);
+            // What is not bare is stony too: belts of one stone are seen from far away.
+            let stony = smoothstep(0.22, 0.60, steepness) * (0.28 + 0.20 * alpine) * (1.0 - 0.65 * wood);
+            colour = mix(colour, rock.stone, stony);
+        }
+    }
+    let bare = smoothstep(0.74 - 0.20 * alpine, 1.02 - 0.20 * alpine, stands);
     let barren = smoothstep(ground.snow_line - 600.0, ground.snow_line - 50.0, height + 260.0 * border);
-    colour = mix(colour, ramp(ROCK, height) * (1.0 + 0.07 * fine), max(bare, 0.8 * barren) * (0.55 + 0.45 * alpine));
+    colour = mix(colour, stone * (1.0 + 0.07 * fine), max(bare, 0.8 * barren) * shown);
 
     let snow_line = ground.snow_line - 330.0 * northness + 170.0 * border + 70.0 * convexity;
     let lies = smoothstep(snow_line - 120.0, snow_line + 220.0, height + 120.0 * fine);
     let slides = smoothstep(0.85, 1.25, steepness + 0.08 * fine);
     let snow = lies * (1.0 - 0.75 * slides);
     colour = mix(colour, SNOW, snow);
+    if ground.geology > 0.0 {
+        colour = mix(colour, chart(rock, sediment), ground.geology);
+    }
 
     let depth = wet.z * wet.z * ground.deepest;
     // The shore is where half of the ground around is under water; it is as sharp as the texels allow.
@@ -202,7 +278,13 @@ fn lain(position: vec2<f32>) -> Lain {
     let shore = lake * (1.0 - smoothstep(0.5 + edge, 0.5 + 3.0 * edge, wet.x));
     // Thin lines look thinner where they are mixed in linear light.
     let inked = river * (1.5 - 0.5 * river);
-    return Lain(plan, colour, snow, slope, form_slope, steep, height, passed, lake, shore, depth, inked);
+    // Debris fills the gullies and hides the beds here and there.
+    let clean = (0.35 + 0.65 * smoothstep(-0.9, 0.5, convexity + 0.35 * fine)) * (0.78 + 0.22 * clamp(fine + broad, -1.0, 1.0));
+    let known = select(0.0, 1.0 - ground.geology, ground.pile > 0.0);
+    let seen = known * bare * shown * clean * (1.0 - snow) * (1.0 - max(lake, inked));
+    return Lain(plan, colour, snow, slope, form_slope, steep, height, passed, lake, shore, depth, inked,
+                seen * (1.0 - 0.7 * smoothstep(3.0, 12.0, sediment)), rock.bed,
+                rock.place + 0.8 * carved.w / max(ground.pile, 1.0) - 0.5);
 }
 
 // Light from the north-west as a draughtsman sets it, relative to flat open ground.
@@ -231,6 +313,9 @@ fn standing_water(depth: f32, bottom: vec3<f32>, sky: f32) -> vec3<f32> {
 fn mapped(land: Lain) -> vec3<f32> {
     let light = noon(land);
     var colour = land.colour * light;
+    if ground.pile > 0.0 {
+        colour *= mix(vec3<f32>(1.0), land.bed, land.bare);
+    }
     colour = mix(colour, RIVER * mix(vec3<f32>(1.0), light, 0.2), min(land.river, 1.0) * (1.0 - land.lake));
     let lake = standing_water(land.depth, light, land.passed.y);
     colour = mix(colour, mix(lake, SHORE, 0.6 * land.shore), land.lake);
@@ -251,9 +336,9 @@ fn at_evening(land: Lain) -> vec3<f32> {
     // What the sunlit land throws back into the shade.
     let back = max(dot(slope, vec2<f32>(EVENING_EAST, EVENING_NORTH)) * up, 0.0);
     let light = EVENING_SUN * (direct * land.passed.z) + EVENING_SKY * dome + EVENING_GROUND * back;
-    // Low light makes colours deep, all but the snow's.
+    // Low light makes colours deep, all but the snow's; bare stone, already strong, less so.
     let grey = vec3<f32>(dot(land.colour, vec3<f32>(0.30, 0.59, 0.11)));
-    let deep = mix(pow(mix(land.colour, grey, 0.16), vec3<f32>(1.28)), land.colour, land.snow);
+    let deep = mix(pow(mix(land.colour, grey, 0.16 + 0.30 * land.bare), vec3<f32>(1.28)), land.colour, land.snow);
     let lake = mix(SHALLOW, DEEP, 0.5 + 0.5 * (1.0 - exp(-land.depth / 120.0)));
     let wet = max(land.lake, 0.9 * land.river);
     let water = mix(SHORE, lake, land.lake) * mix(EVENING_SKY, vec3<f32>(0.34), 0.4);
@@ -271,13 +356,17 @@ fn sheet(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 struct Sheets {
     // sRGB.
     @location(0) map: vec4<f32>,
-    // Roots of linear light, and water.
+    // Roots of linear light, and water; where layers are known half of it, over a half less half of what is bare rock.
     @location(1) evening: vec4<f32>,
+    // Place in the pile of layers, less a half.
+    @location(2) rock: vec4<f32>,
 }
 
 @fragment
 fn sheets(@builtin(position) position: vec4<f32>) -> Sheets {
     let land = lain(position.xy);
     let water = max(land.lake, land.river);
-    return Sheets(vec4<f32>(encoded(mapped(land)), 1.0), vec4<f32>(sqrt(at_evening(land)), water));
+    let lies = select(water, 0.5 + 0.5 * (water - land.bare), ground.pile > 0.0);
+    return Sheets(vec4<f32>(encoded(mapped(land)), 1.0), vec4<f32>(sqrt(at_evening(land)), lies),
+                  vec4<f32>(land.place, 0.0, 0.0, 1.0));
 }

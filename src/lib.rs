@@ -13,11 +13,13 @@
 //! | [`gesture`] | contacts → strokes → hands → rigid fit; the gesture file | worlds, window, clock, files |
 //! | [`mountain`] | plates, transport, compression, fault, uplift, strata of the flat world | window, files, who owns it |
 //! | [`terrain`] | TIN, flow routing with lakes, stream power, landslides | plates, gestures, window |
+//! | [`isostasy`] | the crust floats: root, rebound and foreland by flexure on a coarse grid | plates, gestures, window |
 //! | [`sim`] | owns the world: tick, parameters, undo, roll-back, quarantine | window, clock, files |
 //! | [`surface`] | what a tick yields for eyes and files: plain data | who made it |
+//! | [`mod@slice`] | surface → what a vertical cut meets, and the shapes that draw it | who made it, who paints it |
 //! | [`survey`] | a land on its nodes → surface | plates, gestures, window |
 //! | [`live`] | the session's thread: input in without loss, the newest surface out, panics survived | window, clock |
-//! | [`instrument`] | whose contact is it: land, edit tool or control; the controls of each side | worlds, window, clock |
+//! | [`instrument`] | whose contact is it: land, tool or control; the controls of each side | worlds, window, clock |
 //! | [`kiosk`] | attract, invite, play, idle, reset; staff access | worlds, window, clock, files |
 //! | [`settings`] | the one settings file, validated | window |
 //! | [`picture`] | surface → relief map | worlds |
@@ -33,7 +35,7 @@
 //!
 //! * The core (all but `gpu`, `render`, `ui`, `app` and [`cli`]) never names a window, a graphics card, the clock or
 //!   the environment. The same input gives the same bits, for any number of threads; the one seed is in the world.
-//! * [`gesture`], [`mountain`], [`terrain`] and [`sim`] read and write no files.
+//! * [`gesture`], [`mountain`], [`terrain`], [`isostasy`] and [`sim`] read and write no files.
 //! * Parameters are passed in and never stored in the world, so a snapshot is a clone of plain data.
 //! * The table's y axis points down and is in millimetres; the plan's points north and is in metres. Only [`units`]
 //!   knows both.
@@ -57,9 +59,13 @@ pub mod mountain;
 
 pub mod terrain;
 
+pub mod isostasy;
+
 pub mod sim;
 
 pub mod surface;
+
+pub mod slice;
 
 pub mod survey;
 

@@ -49,7 +49,9 @@ fn listing(dir: &Path) -> Vec<String> {
     names
 }
 
-const OUTPUTS: [&str; 10] = [
+const OUTPUTS: [&str; 12] = [
+    "folds.geojson",
+    "geology.png",
     "height.exr",
     "height16.json",
     "height16.png",
@@ -187,6 +189,24 @@ fn bad_gestures_are_refused_with_file_and_line() {
 }
 
 #[test]
+fn replay_cuts_slices_and_marks_them_on_the_map() {
+    let dir = folder();
+    let run = replay(dir.path(), &[]);
+    let plain = fs::read(run.join("picture.png")).expect("picture");
+    let run = replay(
+        dir.path(),
+        &["--slice", "-20,50,400,50", "--slice", "30,20,60,80"],
+    );
+    let names = listing(&run);
+    for name in ["slice.svg", "slice.png", "slice-2.svg", "slice-2.png"] {
+        assert!(names.iter().any(|found| found == name), "{name} in {names:?}");
+    }
+    let svg = fs::read_to_string(run.join("slice-2.svg")).expect("UTF-8");
+    assert!(svg.contains("B'") && svg.ends_with("</svg>\n"));
+    assert!(plain != fs::read(run.join("picture.png")).expect("picture"));
+}
+
+#[test]
 fn a_torn_last_line_is_a_warning() {
     let dir = folder();
     let whole = fs::read_to_string(gesture("one_finger_push")).expect("shipped gesture");
@@ -218,6 +238,16 @@ fn bad_usage_is_one_line() {
     refused(&["replay", "--threads", "0"], &["--threads"]);
     refused(&["replay", "--frobnicate"], &["--frobnicate"]);
     refused(&["replay", "--years", "-1"], &["--years", "expected"]);
+    refused(
+        &["replay", "--slice", "1,2,3"],
+        &["--slice", "x0,y0,x1,y1", "found 3"],
+    );
+    refused(&["replay", "--slice", "-1,2,x,4"], &["--slice", "x1", "km"]);
+    refused(&["replay", "--slice", "5,5,5,5"], &["--slice", "apart"]);
+    refused(
+        &["replay", "--slice", "-9,5,-8,7"],
+        &["--slice", "cross the land", "km"],
+    );
     refused(&["dance"], &["dance"]);
     refused(&["erode"], &["--uplift"]);
     refused(&["erode", "--uplift", "5"], &["--uplift", "5"]);
@@ -252,7 +282,8 @@ fn erode_makes_land_from_a_number_and_from_maps() {
         String::from_utf8_lossy(&output.stderr)
     );
     let first = dir.path().join("erode");
-    assert_eq!(listing(&first), OUTPUTS);
+    // Rock that is all alike has no geology and no folds.
+    assert_eq!(listing(&first), OUTPUTS[2..]);
 
     // A terrain that exists already goes in as a start surface, with its own uplift map and a mask.
     let start = text(&first.join("height16.png"));

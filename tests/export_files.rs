@@ -10,7 +10,7 @@ use glam::{DVec2, Vec3};
 use orogen::export::height16::{Height16, Sidecar};
 use orogen::export::ply::NodeValues;
 use orogen::export::{ExportError, Mesh, OutDir, exr, geojson, glb, ply};
-use orogen::surface::Raster;
+use orogen::surface::{FoldLine, Raster};
 use picture_common::{Grid, LAND, grid, mountain, on_threads, read_exr, read_glb, read_ply, river};
 
 fn exr_bytes(width: usize, height: usize, channels: &[(&str, &[f32])]) -> Vec<u8> {
@@ -236,6 +236,32 @@ fn rivers_are_lines_in_kilometres() {
         serde_json::json!([25.0, 25.0, 25.0])
     );
     assert_eq!(read["features"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn crests_and_troughs_of_folds_are_lines_with_their_layer() {
+    let course = [DVec2::new(1e3, 2e3), DVec2::new(1.5e3, 9123.4)];
+    let fold = |crest| FoldLine {
+        points: course.to_vec(),
+        crest,
+        layer: 2,
+        wavelength_m: 4321.06,
+    };
+    let folds = [fold(true), fold(false)];
+    let mut bytes = Vec::new();
+    geojson::write_folds(&mut bytes, LAND, &folds).unwrap();
+    let read: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+    assert_eq!(read["type"], "FeatureCollection");
+    let first = &read["features"][0];
+    assert_eq!(
+        first["properties"],
+        serde_json::json!({"kind": "top", "layer": 2, "wavelength_m": 4321.1})
+    );
+    assert_eq!(
+        first["geometry"],
+        serde_json::json!({"type": "LineString", "coordinates": [[1.0, 2.0], [1.5, 9.1234]]})
+    );
+    assert_eq!(read["features"][1]["properties"]["kind"], "bottom");
 }
 
 #[test]

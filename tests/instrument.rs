@@ -25,7 +25,8 @@ fn command(action: Action, side: Side, contact: Option<u64>) -> Deed {
 fn a_tap_on_a_control_acts_when_it_lifts_and_carries_side_and_contact() {
     for side in BOTH {
         for (kind, action) in [
-            (ControlKind::Tool, Action::Tool(Tool::Edit)),
+            (ControlKind::Tool(Tool::Edit), Action::Tool(Tool::Edit)),
+            (ControlKind::Tool(Tool::Slice), Action::Tool(Tool::Slice)),
             (ControlKind::Undo, Action::Undo),
             (ControlKind::PlayPause, Action::Pause),
             (ControlKind::Speed, Action::Speed(2.0)),
@@ -154,7 +155,7 @@ fn one_finger_presses_a_control_and_a_palm_presses_none() {
 fn between_two_controls_nobody_sculpts() {
     let mut table = Table::new();
     let (a, b) = (
-        table.place(Side::South, ControlKind::Tool),
+        table.place(Side::South, ControlKind::Tool(Tool::Edit)),
         table.place(Side::South, ControlKind::Save),
     );
     for i in 0..=200_u32 {
@@ -201,12 +202,12 @@ fn tools_and_undo_belong_to_a_side() {
     assert_eq!(table.down(1, undo), Route::Control, "off, but no land either");
     table.up(1);
     assert_eq!(table.instrument.drain(), []);
-    table.tap(2, table.place(Side::North, ControlKind::Tool));
+    table.tap(2, table.place(Side::North, ControlKind::Tool(Tool::Edit)));
     assert_eq!(table.instrument.tool(Side::North), Tool::Edit);
     assert_eq!(table.instrument.tool(Side::South), Tool::Push);
-    assert!(table.control(Side::North, ControlKind::Tool).on);
-    assert!(!table.control(Side::South, ControlKind::Tool).on);
-    assert_eq!(table.down(3, DVec2::new(600.0, 200.0)), Route::Edit);
+    assert!(table.control(Side::North, ControlKind::Tool(Tool::Edit)).on);
+    assert!(!table.control(Side::South, ControlKind::Tool(Tool::Edit)).on);
+    assert_eq!(table.down(3, DVec2::new(600.0, 200.0)), Route::Tool);
     assert_eq!(table.down(4, DVec2::new(600.0, 500.0)), Route::Land);
 }
 
@@ -222,8 +223,8 @@ fn stopped_time_is_for_editing_on_both_sides_and_shows_the_slider() {
     table.wait(16);
     assert_eq!(sliders(&table), 2);
     assert!(!table.control(Side::South, ControlKind::PlayPause).on);
-    assert_eq!(table.down(1, LAND), Route::Edit);
-    assert_eq!(table.down(2, LAND + DVec2::new(0.0, 200.0)), Route::Edit);
+    assert_eq!(table.down(1, LAND), Route::Tool);
+    assert_eq!(table.down(2, LAND + DVec2::new(0.0, 200.0)), Route::Tool);
     table.tap(3, table.place(Side::South, ControlKind::PlayPause));
     assert_eq!(
         table.instrument.drain(),
@@ -342,7 +343,7 @@ fn letting_go_of_everything_keeps_the_lands_contacts_the_lands() {
 #[test]
 fn a_new_visitor_finds_a_new_instrument() {
     let mut table = Table::new();
-    table.tap(1, table.place(Side::North, ControlKind::Tool));
+    table.tap(1, table.place(Side::North, ControlKind::Tool(Tool::Edit)));
     table.tap(2, table.place(Side::North, ControlKind::Readouts));
     table.instrument.drain();
     table.instrument.reset();
@@ -375,7 +376,10 @@ fn keys_do_what_controls_do() {
     let south = |action| vec![command(action, Side::South, None)];
     assert_eq!(press(Key::PlayPause, 10), (true, south(Action::Pause)));
     assert_eq!(press(Key::Undo, 10), (true, south(Action::Undo)));
-    assert_eq!(press(Key::Tool, 10), (true, south(Action::Tool(Tool::Edit))));
+    assert_eq!(
+        press(Key::Tool(Tool::Edit), 10),
+        (true, south(Action::Tool(Tool::Edit)))
+    );
     assert_eq!(
         press(Key::Save, 10),
         (true, vec![Deed::Save { side: Side::South }])

@@ -107,7 +107,7 @@ impl Bench {
 
     /// A finger goes from one place to another within so many ticks, and waits a little before it lifts.
     fn drag(&mut self, from: DVec2, to: DVec2, ticks: u32) {
-        assert_eq!(self.table.down(1, from), Route::Edit);
+        assert_eq!(self.table.down(1, from), Route::Tool);
         for step in 1..=ticks {
             self.table
                 .shift(1, from.lerp(to, f64::from(step) / f64::from(ticks)));
@@ -307,7 +307,7 @@ fn a_palm_edits_nothing() {
     let mut bench = Bench::new(&[(&[DVec2::new(500.0, 340.0)], DVec2::new(60.0, 0.0))]);
     let mut palm = contact(1, bench.tips(0)[0]);
     palm.confidence = Some(0.0);
-    assert_eq!(bench.table.event(Phase::Down, palm), Route::Edit);
+    assert_eq!(bench.table.event(Phase::Down, palm), Route::Tool);
     assert_eq!(bench.table.instrument.edits(), []);
     bench.run(80);
     bench.table.event(Phase::Up, palm);

@@ -58,6 +58,17 @@ const RULES: &[Rule] = &[
         reason: "terrain is written on nodes and neighbours",
     },
     Rule {
+        module: "isostasy",
+        forbidden: &[
+            "crate::mountain",
+            "crate::gesture",
+            "crate::sim",
+            "crate::picture",
+            "crate::export",
+        ],
+        reason: "the crust floats under any land",
+    },
+    Rule {
         module: "mountain",
         forbidden: &[
             "crate::sim",
@@ -78,6 +89,18 @@ const RULES: &[Rule] = &[
             "crate::picture",
         ],
         reason: "a surface is plain data",
+    },
+    Rule {
+        module: "slice",
+        forbidden: &[
+            "crate::gesture",
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::picture",
+            "crate::export",
+        ],
+        reason: "a slice is cut from a surface, for any painter",
     },
     Rule {
         module: "survey",
@@ -189,12 +212,14 @@ const RULES: &[Rule] = &[
 ];
 
 /// Modules that must run without window, card, clock and environment: all but the command line.
-const CORE: [&str; 14] = [
+const CORE: [&str; 16] = [
     "units",
     "gesture",
     "mountain",
     "terrain",
+    "isostasy",
     "surface",
+    "slice",
     "survey",
     "sim",
     "live",
@@ -206,12 +231,14 @@ const CORE: [&str; 14] = [
     "input",
 ];
 /// Modules that must not touch files: they read and write through `Read` and `Write`, or not at all.
-const WITHOUT_FILES: [&str; 12] = [
+const WITHOUT_FILES: [&str; 14] = [
     "units",
     "gesture",
     "mountain",
     "terrain",
+    "isostasy",
     "surface",
+    "slice",
     "survey",
     "sim",
     "live",

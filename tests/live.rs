@@ -7,6 +7,7 @@ use orogen::gesture::command::{Action, Arrow, Command};
 use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Side, Source};
 use orogen::gesture::file::read_gesture;
 use orogen::live::{Frame, LiveParams, Session, Start};
+use orogen::rock::preset;
 use orogen::sim::{Sim, SimParams, TICK_US, World};
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
@@ -22,6 +23,7 @@ fn params() -> LiveParams {
         map: PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE),
         nodes: NODES,
         seed: SEED,
+        layers: preset::default(),
         sim,
         raster_width: 48,
         threads: 2,
@@ -143,6 +145,45 @@ fn play_visitors(table: &mut Table) {
 
 fn bits(sim: &Sim) -> Vec<u64> {
     sim.world().z.iter().map(|z| z.to_bits()).collect()
+}
+
+#[test]
+fn rock_and_cross_sections_of_a_session_are_seen_and_replay() {
+    let jura = preset::by_name("jura").expect("a preset");
+    let mut table = Table::with(LiveParams {
+        layers: jura.clone(),
+        ..params()
+    });
+    let ends = Arrow {
+        from: at(300.0, 500.0),
+        to: at(900.0, 400.0),
+    };
+    table.order(Action::Slice(ends));
+    table.order(Action::LabelSlice {
+        at: 0.25,
+        text: "here".to_owned(),
+    });
+    table.order(Action::FreezeSlice(true));
+    table.pass(100);
+    let frame = table.frame();
+    let cut = frame.cuts[1].clone().expect("the south side's");
+    let strata = frame.surface.strata.as_ref().expect("layers");
+    assert_eq!(*strata.stratigraphy, *jura);
+    assert_eq!((cut.frozen, cut.notes.len(), &frame.cuts[0]), (true, 1, &None));
+    // Longer than the ring is: what began before it is in it.
+    table.pass(61_000);
+    table.order(Action::Speed(1.0));
+    table.pass(1000);
+    let bytes = table.session.ring_file().recv().expect("the last minute");
+    let file = read_gesture(bytes.as_slice(), "ring").expect("a good file");
+    let world = World::new(params().map, NODES, SEED).expect("a world");
+    let mut replayed = Sim::new(world, params().sim);
+    for frame in file.frames {
+        replayed.feed(frame);
+    }
+    replayed.tick();
+    assert_eq!(*replayed.world().stratigraphy, *jura);
+    assert_eq!(replayed.cut(Side::South), Some(&cut));
 }
 
 #[test]

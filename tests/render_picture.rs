@@ -65,6 +65,7 @@ fn land(height: impl Fn(DVec2) -> f64, depth: impl Fn(DVec2) -> f64) -> Surface 
         rivers: Vec::new(),
         plates: Vec::new(),
         faults: Vec::new(),
+        folds: Vec::new(),
         strata: None,
         elapsed_yr: 1e6,
     }

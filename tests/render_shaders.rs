@@ -76,9 +76,9 @@ fn every_shader_is_valid() {
 fn shared_layouts_are_the_same_on_both_sides() {
     let layouts = [
         layout!(Ground in "sheet": extent, grid, sheet, spacing, lowland, blend, exaggeration, tree_line, snow_line,
-            summit, rim, deepest, ramp_low, ramp_high, aslant),
+            summit, rim, deepest, ramp_low, ramp_high, aslant, pile, geology),
         layout!(View in "land": view_proj, eye, right, up, forward, extent, mesh, focus, gathering,
-            lowland, plan, tilt, exaggeration, haze, lamp, encodes, dusk),
+            lowland, plan, tilt, exaggeration, haze, lamp, encodes, dusk, layered),
         layout!(Air in "land": mist, distance, glow, horizon, middle, zenith, table),
         layout!(Reach in "rivers": from_to, half_widths, large),
     ];
@@ -108,7 +108,7 @@ fn every_shader_file_is_in_the_list() {
     for entry in std::fs::read_dir(folder).expect("shaders") {
         let path = entry.expect("entry").path();
         let name = path.file_stem().expect("name").to_string_lossy().into_owned();
-        let shared = matches!(&*name, "ground" | "encode");
+        let shared = matches!(&*name, "ground" | "encode" | "pile");
         assert!(
             shared || SHADERS.iter().any(|(known, _)| *known == name),
             "{name}.wgsl"

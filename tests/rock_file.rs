@@ -4,12 +4,12 @@ use orogen::rock::{Stratigraphy, preset};
 use proptest::prelude::*;
 
 fn plain() -> &'static str {
-    preset::file("plain").unwrap()
+    preset::file("plain").expect("a preset")
 }
 
 fn refused(text: &str) -> String {
     Stratigraphy::parse(text.as_bytes(), "my.toml")
-        .unwrap_err()
+        .expect_err("a fault")
         .to_string()
 }
 

@@ -282,8 +282,8 @@ fn slopes_fall_to_the_talus_from_above() {
             &mut z,
             |_| talus,
             slide_reach,
-            |i, depth| {
-                assert!(depth > 0.0 && !border[i]);
+            |i, below, depth| {
+                assert!(depth > 0.0 && !border[i] && below != i);
             },
         );
         let mut excess: f64 = 0.0;

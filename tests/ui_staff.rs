@@ -149,6 +149,7 @@ fn each_button_of_the_menu_does_what_it_says_and_grave_ones_ask_first() {
     let mut harness = harness(Table::at_the_menu());
     for (label, action) in [
         ("Save the land", StaffAction::SaveLand),
+        ("Layers of rock", StaffAction::Layers),
         ("Save the last 60 s of touches", StaffAction::SaveContacts),
         ("Clean the table: 30 s without touch", StaffAction::Clean),
         ("Back to the table", StaffAction::Leave),

@@ -10,6 +10,7 @@ use std::error::Error;
 use std::path::Path;
 
 use egui::{Context, LayerId, Rect};
+use orogen::gesture::command::Tool;
 use orogen::gesture::contact::{ContactKey, Side, Source};
 use orogen::instrument::{
     ControlKind, ControlView, EditView, Editing, Instrument, InstrumentParams, Route, Scene as TableScene,
@@ -114,7 +115,7 @@ fn halos(moment: &Moment) -> Halos {
     for (id, (x, route)) in [
         (0.40, Route::Ignored),
         (0.46, Route::Wake),
-        (0.52, Route::Edit),
+        (0.52, Route::Tool),
         (0.58, Route::Control),
     ]
     .into_iter()
@@ -182,7 +183,7 @@ fn edit(context: &Context, screen: Rect, moment: &Moment) {
     chart.draw(&painter, &sight, 1.0, Some(&edits), SETTLED);
     let mut halos = Halos::default();
     for (id, edit) in edits.iter().enumerate() {
-        halos.touch(key(id as u64), edit.at, Route::Edit, 0.0);
+        halos.touch(key(id as u64), edit.at, Route::Tool, 0.0);
     }
     halos.draw(&painter, &sight, SETTLED);
 }
@@ -194,12 +195,14 @@ fn controls(moment: &Moment, clock: &Clock, near: bool) -> Vec<ControlView> {
         size_mm,
         corner: orogen::settings::Corner::default(),
         unattended: false,
+        folds: true,
         readouts: false,
         gesture: orogen::gesture::params::GestureParams::default(),
     });
     let scene = TableScene {
         plates: &moment.surface.plates,
         faults: &moment.surface.faults,
+        cuts: &[None, None],
         map: moment.map,
         clock,
         in_flight: false,
@@ -217,7 +220,7 @@ fn controls(moment: &Moment, clock: &Clock, near: bool) -> Vec<ControlView> {
         } else {
             0.0
         };
-        view.on |= view.kind == ControlKind::Tool;
+        view.on |= view.kind == ControlKind::Tool(Tool::Edit);
         view.enabled = true;
     }
     views

@@ -83,6 +83,7 @@ fn surface(sim: &Sim, map: PlanMap, width: usize) -> Surface {
         rivers: drawn(graph, RIVER_AREA),
         plates: sim.plate_marks(),
         faults: sim.fault_traces(),
+        folds: Vec::new(),
         strata: None,
         elapsed_yr: world.time_yr,
     }

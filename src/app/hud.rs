@@ -7,7 +7,9 @@ use winit::event::KeyEvent;
 
 use super::graphics::Overlay;
 use super::keys;
+use super::layers::Layers;
 use super::metrics::Health;
+use super::sheets::Sheets;
 use super::table::Table;
 use super::told::Place;
 use crate::gesture::command::Tool;
@@ -20,7 +22,7 @@ use crate::ui::halo::Halos;
 use crate::ui::ink::Chart;
 use crate::ui::readouts::Readings;
 use crate::ui::staff::{self, ContactHealth, StaffAction, StaffPanel, StaffView};
-use crate::ui::{Sight, controls, ghost, readouts, warning};
+use crate::ui::{Sight, controls, folds, ghost, readouts, section, warning};
 
 /// Time in which figures come and go, s.
 const FIGURES_S: f64 = 0.25;
@@ -31,6 +33,8 @@ pub(super) struct Hud {
     chart: Chart,
     halos: Halos,
     panel: StaffPanel,
+    sheets: Sheets,
+    layers: Layers,
     events: Vec<Event>,
     /// The contact that is egui's pointer.
     pointer: Option<ContactKey>,
@@ -70,6 +74,8 @@ impl Hud {
             chart: Chart::default(),
             halos: Halos::default(),
             panel: StaffPanel::default(),
+            sheets: Sheets::default(),
+            layers: Layers::default(),
             events: Vec::new(),
             pointer: None,
             figures: [0.0; 2],
@@ -85,9 +91,22 @@ impl Hud {
         *self = Self::new(self.tells);
     }
 
-    /// A key, for whoever works the panels without touching.
-    pub(super) fn key(&mut self, key: &KeyEvent) {
+    /// A key, for whoever works the panels without touching. True when it was typed, and stands for nothing else.
+    pub(super) fn key(&mut self, key: &KeyEvent) -> bool {
+        if self.sheets.types(key) {
+            return true;
+        }
         self.events.extend(keys::panel(key));
+        let typing = self.context.egui_wants_keyboard_input();
+        if typing {
+            self.events.extend(keys::typed(key));
+        }
+        typing && key.state.is_pressed()
+    }
+
+    /// Opens or closes the panel of rock layers.
+    pub(super) fn toggle_layers(&mut self, table: &Table) {
+        self.layers.toggle(table);
     }
 
     /// Where the buttons of the panel are, when that has changed since this was last asked.
@@ -111,6 +130,7 @@ impl Hud {
         let rect = Rect::from_min_size(point(corner), point(size).to_vec2());
         let per_mm = size.x / table.map().size_mm().x;
         self.follow(table, corner, per_mm, dt_s);
+        self.sheets.follow(table, &Sight::flat(table.map(), rect));
         let screen = Rect::from_min_size(Pos2::ZERO, Vec2::new(size_px[0] as f32, size_px[1] as f32));
         let input = RawInput {
             screen_rect: Some(screen),
@@ -121,15 +141,19 @@ impl Hud {
         };
         let context = self.context.clone();
         let mut shown = staff::Shown::default();
+        let mut layers = None;
         let mut output = context.run_pass(input, |context| {
             self.draw(context, table, settings, rect, screen);
+            layers = self
+                .layers
+                .show(context, table, staff::scale_for(screen.size(), per_mm as f32));
             shown = self.panels(context, table, settings, health, screen, per_mm as f32);
         });
-        let rects = shown.rect.map(|rect| {
+        let rects = layers.into_iter().chain(shown.rect).map(|rect| {
             let mm = |at: Pos2| (DVec2::new(f64::from(at.x), f64::from(at.y)) - corner) / per_mm;
             (mm(rect.min), mm(rect.max))
         });
-        table.set_panels(rects.into_iter().collect());
+        table.set_panels(rects.collect());
         if let Some(tree) = output.platform_output.accesskit_update.take() {
             self.tell(table.door().phase(), &tree);
         }
@@ -235,8 +259,23 @@ impl Hud {
             .any(|&side| table.instrument().tool(side) == Tool::Edit)
             || frame.clock.paused;
         let ink = (1.0 - aloft) as f32;
+        let instrument = table.instrument();
+        let folding = [Side::North, Side::South]
+            .iter()
+            .any(|&side| instrument.tool(side) == Tool::Fold);
+        if folding {
+            folds::draw_axes(&painter, on_land, &frame.surface.folds, ink);
+        }
         self.chart
             .draw(&painter, on_land, ink, editing.then_some(&edits[..]), now_s);
+        folds::draw_tool(
+            &painter,
+            on_land,
+            &instrument.strokes(),
+            instrument.fold_handles(),
+            ink,
+        );
+        section::draw_lines(&painter, on_land, instrument.slices(), 1.0);
         if let Some(hint) = table.kiosk().hint() {
             if settings.view.reduced_motion {
                 ghost::draw_still(&painter, &flat, &hint);
@@ -245,6 +284,9 @@ impl Hud {
             }
         }
         let quiet = (1.0 - aloft) as f32;
+        for paper in instrument.papers().filter(|_| quiet > 0.0) {
+            section::draw_sheet(&painter, &flat, &paper, &self.sheets.sheet(paper.side), quiet);
+        }
         if quiet > 0.0 && table.kiosk().phase() != Phase::Attract {
             controls::draw(&painter, &flat, &table.instrument().controls(), quiet);
         }

@@ -3,6 +3,7 @@
 use winit::event::{ElementState, KeyEvent};
 use winit::keyboard::{Key as WinitKey, ModifiersState, NamedKey};
 
+use crate::gesture::command::Tool;
 use crate::instrument::Key;
 
 /// Escape closes the program, unless it has a mouse's resting hands to lift first.
@@ -13,6 +14,19 @@ pub(super) fn closes(key: &KeyEvent) -> bool {
 /// F11 changes between window and full screen.
 pub(super) fn toggles_full_screen(key: &KeyEvent) -> bool {
     pressed_once(key) && key.logical_key == WinitKey::Named(NamedKey::F11)
+}
+
+/// L opens and closes the panel of rock layers.
+pub(super) fn toggles_layers(key: &KeyEvent) -> bool {
+    let is_l = |text: &str| text.eq_ignore_ascii_case("l");
+    pressed_once(key) && matches!(&key.logical_key, WinitKey::Character(text) if is_l(text))
+}
+
+/// What a key types into a field of a panel.
+pub(super) fn typed(key: &KeyEvent) -> Option<egui::Event> {
+    let text: String = key.text.iter().flat_map(|text| text.chars()).collect();
+    let pressed = key.state == ElementState::Pressed;
+    (pressed && !text.is_empty() && !text.chars().any(char::is_control)).then_some(egui::Event::Text(text))
 }
 
 fn pressed_once(key: &KeyEvent) -> bool {
@@ -29,6 +43,7 @@ pub(super) fn panel(key: &KeyEvent) -> Option<egui::Event> {
         WinitKey::Named(NamedKey::ArrowDown) => egui::Key::ArrowDown,
         WinitKey::Named(NamedKey::ArrowLeft) => egui::Key::ArrowLeft,
         WinitKey::Named(NamedKey::ArrowRight) => egui::Key::ArrowRight,
+        WinitKey::Named(NamedKey::Backspace) => egui::Key::Backspace,
         _ => return None,
     };
     Some(egui::Event::Key {
@@ -55,7 +70,9 @@ fn named(key: &WinitKey, control: bool) -> Option<Key> {
         WinitKey::Named(NamedKey::ArrowRight) => Some(Key::Forward),
         WinitKey::Character(text) => match (text.to_lowercase().as_str(), control) {
             ("u", false) | ("z", true) => Some(Key::Undo),
-            ("e", false) => Some(Key::Tool),
+            ("e", false) => Some(Key::Tool(Tool::Edit)),
+            ("f", false) => Some(Key::Tool(Tool::Fold)),
+            ("c", false) => Some(Key::Tool(Tool::Slice)),
             ("i", false) => Some(Key::Readouts),
             ("s", _) => Some(Key::Save),
             ("r", false) => Some(Key::StartOver),
@@ -77,6 +94,8 @@ mod tests {
         assert_eq!(letter("U", false), Some(Key::Undo));
         assert_eq!(letter("z", true), Some(Key::Undo));
         assert_eq!(letter("z", false), None);
+        assert_eq!(letter("f", false), Some(Key::Tool(Tool::Fold)));
+        assert_eq!(letter("c", false), Some(Key::Tool(Tool::Slice)));
         assert_eq!(letter("s", true), Some(Key::Save));
         assert_eq!(
             named(&WinitKey::Named(NamedKey::Space), false),

@@ -9,10 +9,12 @@ mod graphics;
 mod hud;
 mod keeper;
 mod keys;
+mod layers;
 mod log;
 mod metrics;
 mod save;
 mod setup;
+mod sheets;
 mod table;
 mod told;
 mod watch;
@@ -24,6 +26,7 @@ use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
 use crate::gesture::command::Mode;
+use crate::input::pile::PileError;
 use crate::settings::{Settings, SettingsError};
 pub use save::{SaveLand, SavedLand};
 
@@ -44,6 +47,8 @@ pub struct Options {
     pub settings: Option<PathBuf>,
     /// Where figures go, one JSON line each second, instead of the settings' file.
     pub metrics: Option<PathBuf>,
+    /// Rock under new land, instead of the settings': a preset, or the path of a TOML file.
+    pub layers: Option<String>,
     /// How a land is written to files.
     pub save: SaveLand,
 }
@@ -60,6 +65,9 @@ pub enum AppError {
     /// The settings file is not one.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// There is no such pile of rock.
+    #[error(transparent)]
+    Layers(#[from] PileError),
     /// The settings or metrics file cannot be opened.
     #[error("{0}: {1}")]
     File(String, io::Error),
@@ -76,6 +84,7 @@ pub enum AppError {
 /// no graphics can be had any more.
 pub fn run(options: &Options) -> Result<(), AppError> {
     let settings = load_settings(options)?;
+    let layers = setup::layers(options, &settings)?;
     let metrics_path = options
         .metrics
         .clone()
@@ -86,7 +95,13 @@ pub fn run(options: &Options) -> Result<(), AppError> {
     })?;
     let events = EventLoop::new().map_err(|error| AppError::NoDisplay(no_display(&error)))?;
     let _log = log::start(settings.files.log.as_ref().map(PathBuf::from).as_deref());
-    let mut program = window::Program::new(options.clone(), settings, metrics, events.owned_display_handle());
+    let mut program = window::Program::new(
+        options.clone(),
+        settings,
+        layers,
+        metrics,
+        events.owned_display_handle(),
+    );
     let ran = events.run_app(&mut program);
     program.end()?;
     ran.map_err(|error| AppError::Other(error.to_string()))

@@ -1,12 +1,19 @@
 //! What the settings mean to the parts of the table.
 
+use std::path::Path;
+use std::sync::Arc;
+
 use glam::DVec2;
 
+use super::Options;
+
 use crate::gesture::params::GestureParams;
+use crate::input::pile::{PileError, named_pile};
 use crate::input::window::WindowMap;
 use crate::instrument::InstrumentParams;
 use crate::kiosk::{DoorParams, Flight};
 use crate::render::plan_rect;
+use crate::rock::Stratigraphy;
 use crate::settings::Settings;
 use crate::units::PlanMap;
 
@@ -35,6 +42,15 @@ pub(super) fn nodes(settings: &Settings, software: bool) -> usize {
     settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
 }
 
+/// The rock under new land.
+pub(super) fn layers(options: &Options, settings: &Settings) -> Result<Arc<Stratigraphy>, PileError> {
+    if let Some(name) = &options.layers {
+        return named_pile(name, Path::new(""));
+    }
+    let file = options.settings.as_deref().and_then(Path::parent);
+    named_pile(&settings.land.layers, file.unwrap_or(Path::new("")))
+}
+
 /// How the window's pixels lie on the table.
 pub(super) fn window_map(settings: &Settings, map: &PlanMap, size_px: DVec2) -> WindowMap {
     let land_px = plan_rect(map.extent(), size_px);
@@ -47,6 +63,7 @@ pub(super) fn instrument_params(settings: &Settings, size_mm: DVec2, unattended:
         size_mm,
         corner: settings.staff.corner,
         unattended,
+        folds: !settings.view.tools.are_few(unattended),
         readouts: settings.view.readouts,
         gesture: GestureParams::default(),
     }

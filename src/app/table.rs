@@ -2,19 +2,22 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::save::Saver;
 use super::setup::{door_params, grounded, instrument_params, nodes, raster_width, window_map};
 use super::{AppError, Options};
-use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase};
+use crate::gesture::command::{Action, Command};
+use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase, Side};
 use crate::gesture::hand::{Doing, HandView};
 use crate::input::window::{TouchPhase, WindowInput};
-use crate::instrument::{Deed, Instrument, Key, Route, Scene};
+use crate::instrument::{ControlId, Deed, Instrument, Key, Route, Scene};
 use crate::kiosk::{DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor};
 use crate::live::{Frame, Heartbeat, LiveParams, Session, Start};
 use crate::render::{Camera, Focus, LandStyle, flight};
+use crate::rock::Stratigraphy;
 use crate::settings::Settings;
 use crate::sim::SimParams;
 use crate::units::PlanMap;
@@ -68,6 +71,7 @@ macro_rules! with_scene {
         let $scene = Scene {
             plates: &frame.surface.plates,
             faults: &frame.surface.faults,
+            cuts: &frame.cuts,
             map: $table.map,
             clock: &frame.clock,
             in_flight: $table.flight.in_flight(),
@@ -96,6 +100,8 @@ pub(super) struct Table {
     /// Rectangles of panels, table mm.
     panels: Vec<(DVec2, DVec2)>,
     seen: Vec<Seen>,
+    /// A place on a side's sheet where somebody wants a note, parts of its size.
+    note: Option<(Side, DVec2)>,
     focus: Focus,
     focus_goal: Focus,
     /// The land that the goal was found on.
@@ -111,7 +117,7 @@ pub(super) struct Table {
     cleaning_until_us: u64,
     /// When each contact that is down landed.
     since_us: BTreeMap<ContactKey, u64>,
-    pub(super) layout_told: Option<(DVec2, bool)>,
+    pub(super) layout_told: Option<(DVec2, Vec<ControlId>)>,
 }
 
 impl Table {
@@ -120,6 +126,7 @@ impl Table {
         settings: &Settings,
         size_px: [u32; 2],
         software: bool,
+        layers: Arc<Stratigraphy>,
     ) -> Result<Self, AppError> {
         let size_px = DVec2::from(size_px.map(f64::from));
         let size_mm = settings.table_size_mm(size_px);
@@ -130,6 +137,7 @@ impl Table {
             map,
             nodes,
             seed: 1,
+            layers,
             sim: SimParams::default(),
             raster_width: raster_width(software),
             threads: 0,
@@ -152,6 +160,7 @@ impl Table {
             saver: Saver::new(options.save.clone()),
             panels: Vec::new(),
             seen: Vec::new(),
+            note: None,
             focus,
             focus_goal: focus,
             focus_land: 0,
@@ -227,6 +236,25 @@ impl Table {
     /// What contacts did since this was last asked.
     pub(super) fn take_seen(&mut self) -> Vec<Seen> {
         std::mem::take(&mut self.seen)
+    }
+
+    /// Where somebody wants a note on a sheet, if that is news.
+    pub(super) fn take_note(&mut self) -> Option<(Side, DVec2)> {
+        self.note.take()
+    }
+
+    /// The artist's tools are offered.
+    pub(super) fn offers_layers(&self, settings: &Settings) -> bool {
+        !settings.view.tools.are_few(self.unattended)
+    }
+
+    /// A side does something that has no control.
+    pub(super) fn command(&mut self, action: Action, side: Side) {
+        let command = Command {
+            side: Some(side),
+            ..Command::new(action)
+        };
+        self.session.send(Vec::new(), vec![command], self.now_us);
     }
 
     /// Rectangles of panels, table mm: contacts that land there are the panels'.
@@ -525,6 +553,7 @@ impl Table {
                 Deed::Save { .. } => self.save(),
                 // The instrument remembers what it shows.
                 Deed::Readouts { .. } => {}
+                Deed::Note { side, at } => self.note = Some((side, at)),
             }
         }
     }

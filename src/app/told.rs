@@ -51,14 +51,14 @@ impl Table {
     /// Where controls are in the window, when that has changed since this was last asked: for whoever drives the
     /// table from outside.
     pub(super) fn layout_line(&mut self) -> Option<LayoutLine> {
-        let paused = self.frame().clock.paused;
-        if self.layout_told == Some((self.size_px, paused)) {
+        let controls = self.instrument.controls();
+        let now = (self.size_px, controls.iter().map(|control| control.id).collect());
+        if self.layout_told.as_ref() == Some(&now) {
             return None;
         }
-        self.layout_told = Some((self.size_px, paused));
+        self.layout_told = Some(now);
         let (corner, size) = plan_rect(self.map.extent(), self.size_px);
         let per_mm = size.x / self.map.size_mm().x;
-        let controls = self.instrument.controls();
         let size_mm = self.map.size_mm();
         let staff_corner = self.instrument.params().corner.position(size_mm);
         // A fingertip inside the corner itself.
@@ -69,7 +69,7 @@ impl Table {
                 .map(|control| {
                     let at = corner + control.centre_mm * per_mm;
                     ControlPlace {
-                        id: format!("{}-{:?}", side_name(control.side), control.kind).to_lowercase(),
+                        id: format!("{}-{}", side_name(control.side), kind_name(control.kind)),
                         side: side_name(control.side),
                         kind: kind_name(control.kind),
                         x_px: at.x,
@@ -132,7 +132,7 @@ fn side_name(side: Side) -> &'static str {
 
 fn kind_name(kind: ControlKind) -> &'static str {
     match kind {
-        ControlKind::Tool => "tool",
+        ControlKind::Tool(tool) => tool.name(),
         ControlKind::Undo => "undo",
         ControlKind::PlayPause => "play_pause",
         ControlKind::Speed => "speed",
@@ -140,5 +140,7 @@ fn kind_name(kind: ControlKind) -> &'static str {
         ControlKind::StartOver => "start_over",
         ControlKind::Readouts => "readouts",
         ControlKind::Save => "save",
+        ControlKind::FreezeSlice => "freeze_slice",
+        ControlKind::CloseSlice => "close_slice",
     }
 }

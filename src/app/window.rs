@@ -23,6 +23,7 @@ use super::table::{Raw, Table};
 use super::watch::{Heartbeat, Watch};
 use super::{AppError, Options};
 use crate::input::window::TouchPhase as Touched;
+use crate::rock::Stratigraphy;
 use crate::settings::Settings;
 use crate::ui::staff::StaffAction;
 
@@ -46,6 +47,7 @@ const MOST_REVIVALS: u32 = 20;
 pub(super) struct Program {
     options: Options,
     settings: Settings,
+    layers: Arc<Stratigraphy>,
     metrics: Metrics,
     display: OwnedDisplayHandle,
     began: Instant,
@@ -80,12 +82,14 @@ impl Program {
     pub(super) fn new(
         options: Options,
         settings: Settings,
+        layers: Arc<Stratigraphy>,
         metrics: Metrics,
         display: OwnedDisplayHandle,
     ) -> Self {
         Self {
             options,
             settings,
+            layers,
             metrics,
             display,
             began: Instant::now(),
@@ -112,7 +116,13 @@ impl Program {
             .map_err(|error| AppError::NoGraphics(format!("no usable graphics: {error}")))?;
         let software = graphics.gpu().is_software();
         let size = graphics.size_px();
-        let table = Table::new(&self.options, &self.settings, size, software)?;
+        let table = Table::new(
+            &self.options,
+            &self.settings,
+            size,
+            software,
+            Arc::clone(&self.layers),
+        )?;
         let (window_heart, session_heart) = (self.heart.clone(), table.session_beats());
         let watch = Watch::over(vec![
             ("the window", Box::new(move || window_heart.beats())),
@@ -297,6 +307,10 @@ impl Open {
                 door.close();
                 self.table.start_afresh(now_us);
             }
+            StaffAction::Layers => {
+                door.close();
+                self.hud.toggle_layers(&self.table);
+            }
             StaffAction::SaveContacts => self.table.save_contacts(),
             StaffAction::SaveLand => self.table.save(),
             StaffAction::Clean => {
@@ -425,16 +439,24 @@ impl ApplicationHandler for Program {
                 is_synthetic: false,
                 ..
             } => {
+                if open.hud.key(&key) {
+                    return;
+                }
                 let ends = !self.options.kiosk && keys::closes(&key);
                 if ends && !open.table.lift_planted(micros(now_s)) {
                     events.exit();
+                }
+                if !self.options.kiosk
+                    && keys::toggles_layers(&key)
+                    && open.table.offers_layers(&self.settings)
+                {
+                    open.hud.toggle_layers(&open.table);
                 }
                 if !self.options.kiosk && keys::toggles_full_screen(&key) {
                     let full = open.window.fullscreen().is_none();
                     open.window
                         .set_fullscreen(full.then_some(Fullscreen::Borderless(None)));
                 }
-                open.hud.key(&key);
                 if let Some((key, pressed)) = keys::control(&key, open.modifiers) {
                     open.table.key(key, pressed, micros(now_s));
                 }

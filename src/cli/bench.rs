@@ -12,11 +12,14 @@ use super::{BenchArgs, on_threads};
 use crate::gesture::contact::Side;
 use crate::gesture::event::{HandEvent, HandId, Leg};
 use crate::gesture::rigid::RigidFit;
+use crate::isostasy::{Crust, Isostasy, IsostasyParams};
+use crate::mountain::fold::lines::troughs;
+use crate::mountain::fold::{FoldDrive, FoldMesh, FoldShape, Skeleton};
 use crate::mountain::transport::{CpuTransport, MovedBody, TransportProblem, TransportStage};
-use crate::mountain::{MountainParams, PlateSet, Tectonics};
+use crate::mountain::{Grid, MountainParams, PlateSet, Tectonics};
 use crate::picture::{MapStyle, relief_map};
 use crate::surface::{Raster, Surface};
-use crate::terrain::{Erosion, ErosionParams, Forcing, StartLand, Tin, TinRaster};
+use crate::terrain::{Deposition, Erosion, ErosionParams, Forcing, Sediment, StartLand, Tin, TinRaster};
 use crate::units::{DEFAULT_SHORT_SIDE, Extent, KM, PlanMap};
 
 /// The square and the constants at which the literature's figures were taken: 100 × 100 km, U = 5e-4 m/yr,
@@ -67,6 +70,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
             bench.terrain(nodes)?;
         }
         bench.mountain();
+        bench.folds()?;
         bench.picture()?;
         #[cfg(feature = "app")]
         bench.frames();
@@ -224,7 +228,34 @@ impl Bench {
             runs,
             || erosion.step(&tin, &mut z, &forcing, &bare, DT_YR),
         );
+        self.floating(nodes, &tin, &mut z, &params);
         Ok(())
+    }
+
+    /// Steps of a developed land that keeps its sediment, and the answer of the crust under it.
+    fn floating(&mut self, nodes: usize, tin: &Tin, z: &mut [f64], params: &ErosionParams) {
+        let runs = if nodes > 200_000 { 3 } else { 11 };
+        let params = ErosionParams {
+            deposition: Some(Deposition::default()),
+            ..*params
+        };
+        let mut uplift = vec![UPLIFT; nodes];
+        let forcing = Forcing::uplift(&uplift);
+        let mut sediment = Sediment::new(nodes);
+        let mut erosion = Erosion::new(tin);
+        for _ in 0..DEVELOPED_STEPS / 10 {
+            erosion.step_with_sediment(tin, z, &mut sediment, &forcing, &params, DT_YR);
+        }
+        self.time(("erosion_step", nodes, "deposition"), None, runs, || {
+            erosion.step_with_sediment(tin, z, &mut sediment, &forcing, &params, DT_YR)
+        });
+        let thickening = vec![UPLIFT; nodes];
+        let floats = IsostasyParams::default();
+        let mut isostasy = Isostasy::new(tin, &floats);
+        let mut crust = Crust::new(nodes);
+        self.time(("flexure", nodes, "–"), None, runs, || {
+            isostasy.uplift(&mut crust, &thickening, &floats, DT_YR, &mut uplift);
+        });
     }
 
     /// Transport of three plates on 1024² cells, and the whole way from a moved finger to new uplift.
@@ -253,6 +284,33 @@ impl Bench {
         });
     }
 
+    /// Skeletons of folds, crests and troughs together, at about the sizes of the literature (955, 4,246 and 36,715
+    /// lines), and their heights on 1024² cells.
+    fn folds(&mut self) -> Result<(), Failure> {
+        let grid = Grid::over(SQUARE, 1024 * 1024);
+        let drive = FoldDrive::uniform(grid.blocks(), UPLIFT, 0.4);
+        let sizes = [
+            ("7 km", 7.0, 0.9, 2.1),
+            ("3 km", 3.0, 3.7, 1.4),
+            ("1 km", 1.0, 53.0, 2.8),
+        ];
+        for (state, wavelength, skeletons_ms, heights_ms) in sizes {
+            let mesh = FoldMesh::new(SQUARE, wavelength * KM, SEED).map_err(Failure::other)?;
+            let choose = || {
+                let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
+                let lines = skeleton.top_len() + troughs(&mesh, &skeleton).len();
+                (skeleton, lines)
+            };
+            let (skeleton, lines) = choose();
+            self.time(("fold_skeletons", lines, state), Some(skeletons_ms), 21, choose);
+            let mut heights = Vec::new();
+            self.time(("fold_heights", grid.len(), state), Some(heights_ms), 11, || {
+                FoldShape::new(&mesh, &skeleton).on_grid(grid, &mut heights);
+            });
+        }
+        Ok(())
+    }
+
     /// The relief map at 1920 × 1080.
     fn picture(&mut self) -> Result<(), Failure> {
         let map = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE);
@@ -276,6 +334,7 @@ impl Bench {
             rivers: Vec::new(),
             plates: Vec::new(),
             faults: Vec::new(),
+            folds: Vec::new(),
             strata: None,
             elapsed_yr: 0.0,
         };
@@ -337,10 +396,16 @@ impl Bench {
     }
 }
 
-/// A range of ridges and valleys on a plain, with rivers.
+/// A range of ridges and valleys on a plain, with rivers, over flat layers.
 #[cfg(feature = "app")]
 fn mountains(width: usize, height: usize) -> Surface {
-    use crate::surface::{River, RiverPoint};
+    use std::sync::Arc;
+
+    use crate::rock::preset;
+    use crate::surface::{River, RiverPoint, StrataMap};
+
+    /// Height of the first surface over the plain, metres.
+    const TOP: f32 = 3000.0;
 
     let extent = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE).extent();
     let field = |value: &dyn Fn(DVec2) -> f64| Raster::from_fn(width, height, extent, |p| value(p) as f32);
@@ -355,18 +420,32 @@ fn mountains(width: usize, height: usize) -> Surface {
             order: 3,
         }
     };
+    let height = field(&|p| {
+        let belt = (1.0 - ((p.x - extent.width / 2.0) / (36.0 * KM)).powi(2)).max(0.0);
+        belt * (2200.0 + 900.0 * (p.y / 900.0 + (p.x / 1700.0).sin()).sin() * (p.x / 2300.0).cos())
+    });
+    let none = field(&|_| 0.0);
+    let depth = Raster {
+        data: height.data.iter().map(|z| TOP - z).collect(),
+        ..none.clone()
+    };
     Surface {
-        height: field(&|p| {
-            let belt = (1.0 - ((p.x - extent.width / 2.0) / (36.0 * KM)).powi(2)).max(0.0);
-            belt * (2200.0 + 900.0 * (p.y / 900.0 + (p.x / 1700.0).sin()).sin() * (p.x / 2300.0).cos())
-        }),
+        strata: Some(Arc::new(StrataMap {
+            stratigraphy: preset::default(),
+            base: field(&|_| f64::from(TOP)),
+            folds: Vec::new(),
+            sediment: none.clone(),
+            root: none.clone(),
+            depth,
+        })),
+        height,
         lake_depth: field(&|p| 4.0 * KM - p.distance(extent.size() / 5.0)),
-        drainage: field(&|_| 0.0),
+        drainage: none,
         spacing: 545.0,
         rivers: (0..120).map(river).collect(),
         plates: Vec::new(),
         faults: Vec::new(),
-        strata: None,
+        folds: Vec::new(),
         elapsed_yr: 5e6,
     }
 }

@@ -258,6 +258,7 @@ fn erode(
         format_version: REPORT_VERSION,
         orogen: env!("CARGO_PKG_VERSION"),
         inputs: Inputs {
+            layers: None,
             title: title.to_owned(),
             seed,
             nodes: tin.len(),
@@ -282,6 +283,7 @@ fn erode(
         flow: &flow,
         k: &k,
         marks: Marks::default(),
+        under: None,
         elapsed_yr: args.years,
     };
     land.write(out, args.common.size, pictures, &mut timings)?;

@@ -9,6 +9,7 @@ mod output;
 #[cfg(feature = "app")]
 mod render;
 mod replay;
+mod slice;
 #[cfg(feature = "app")]
 mod table;
 
@@ -17,7 +18,9 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec2;
 
+use crate::slice::parse_ends;
 use console::Console;
 use failure::Failure;
 
@@ -74,6 +77,9 @@ struct TableArgs {
     /// Which world to begin with.
     #[arg(long, value_enum)]
     mode: Option<table::ModeChoice>,
+    /// Rock under new land: a preset, or a TOML file (default: the settings').
+    #[arg(long, value_name = "NAME|FILE")]
+    layers: Option<String>,
     /// Settings file (TOML); it is written when staff save their changes.
     #[arg(long, value_name = "FILE")]
     settings: Option<PathBuf>,
@@ -150,12 +156,19 @@ struct ReplayArgs {
     /// Model years that the world runs on after the last push (default: the file's, else 5e6).
     #[arg(long, allow_negative_numbers = true)]
     years: Option<f64>,
+    /// Rock under the land: a preset (plain, jura, zagros, andes, digne, …), or a TOML file.
+    #[arg(long, value_name = "NAME|FILE", default_value = "plain")]
+    layers: String,
     /// Use the rules of the paper instead of Orogen's own defaults (no rest weight, tapers or rifts).
     #[arg(long)]
     paper: bool,
     /// Also draw a picture every N erosion steps, into `frames/`.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     every: Option<u32>,
+    /// Also draw a cross-section between two points of the plan, in km from the south-west corner (x east, y north), as
+    /// slice.svg and slice.png; may be given several times.
+    #[arg(long = "slice", value_name = "X0,Y0,X1,Y1", value_parser = parse_ends, allow_hyphen_values = true)]
+    slices: Vec<[DVec2; 2]>,
 }
 
 #[derive(Debug, Args)]

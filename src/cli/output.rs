@@ -5,6 +5,7 @@ use std::io::{self, Cursor, Write};
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+use glam::DVec2;
 use image::{ImageFormat, RgbaImage};
 use serde::Serialize;
 
@@ -12,15 +13,18 @@ use super::PictureChoice;
 use super::failure::Failure;
 #[cfg(feature = "app")]
 use super::render;
+use super::slice;
 use crate::export::height16::Height16;
 use crate::export::{Mesh, OutDir, exr, geojson, glb, ply};
-use crate::picture::{MapStyle, relief_map};
+use crate::gesture::contact::Side;
+use crate::picture::{MapStyle, geological_map, relief_map};
 use crate::sim::Sim;
+use crate::slice::clipped;
 use crate::surface::rivers::{self, River};
-use crate::surface::{FaultTrace, PlateMark, Raster, Surface};
-use crate::survey::{Ground, Survey, Water};
+use crate::surface::{Cut, FaultTrace, FoldLine, PlateMark, Surface};
+use crate::survey::{Ground, Survey, Underground, Water};
 use crate::terrain::{Flow, Tin};
-use crate::units::KM;
+use crate::units::{Extent, KM};
 
 /// Drainage area from which a stream counts as a river in `rivers.geojson`, m².
 const RIVER_AREA: f64 = 10.0 * KM * KM;
@@ -68,11 +72,18 @@ impl Timings {
 /// The pictures that a run draws, and what it needs for them: known before the work, so that nobody waits in vain.
 pub(super) struct Pictures {
     choice: PictureChoice,
+    slices: Vec<[DVec2; 2]>,
     #[cfg(feature = "app")]
     gpu: Option<crate::gpu::Gpu>,
 }
 
 impl Pictures {
+    /// Also draws slices between these ends, plan metres.
+    pub(super) fn with_slices(mut self, slices: &[[DVec2; 2]]) -> Self {
+        self.slices = slices.to_vec();
+        self
+    }
+
     /// Fails where the rendered picture alone is wanted and nothing can draw it; warns where the map is drawn as well.
     #[cfg_attr(
         not(feature = "app"),
@@ -84,9 +95,24 @@ impl Pictures {
     pub(super) fn new(choice: PictureChoice) -> Result<Self, Failure> {
         Ok(Self {
             choice,
+            slices: Vec::new(),
             #[cfg(feature = "app")]
             gpu: render::adapter(choice)?,
         })
+    }
+
+    /// All slices of a run: those asked for, then those people looked at, where they meet the `land`.
+    fn cuts(&self, looked_at: &[Cut], land: Extent) -> Result<Vec<Cut>, Failure> {
+        let asked = slice::on_land(&self.slices, land)?.into_iter().map(|ends| Cut {
+            ends,
+            frozen: false,
+            notes: Vec::new(),
+        });
+        let seen = looked_at.iter().filter_map(|cut| {
+            let ends = clipped(cut.ends, land).ok()?;
+            Some(Cut { ends, ..cut.clone() })
+        });
+        Ok(asked.chain(seen).collect())
     }
 }
 
@@ -95,6 +121,9 @@ impl Pictures {
 pub(super) struct Marks {
     pub(super) plates: Vec<PlateMark>,
     pub(super) faults: Vec<FaultTrace>,
+    pub(super) folds: Vec<FoldLine>,
+    /// Cross-sections that people looked at.
+    pub(super) cuts: Vec<Cut>,
 }
 
 /// A land on its nodes, ready to be written.
@@ -109,6 +138,8 @@ pub(super) struct LandFiles<'a> {
     /// Stream-power k at each node.
     pub(super) k: &'a [f64],
     pub(super) marks: Marks,
+    /// The layers under it.
+    pub(super) under: Option<Underground<'a>>,
     pub(super) elapsed_yr: f64,
 }
 
@@ -122,6 +153,7 @@ impl LandFiles<'_> {
         timings: &mut Timings,
     ) -> Result<(), Failure> {
         let title = self.title.to_owned();
+        let cuts = pictures.cuts(&self.marks.cuts, self.tin.extent())?;
         let (tin, z, uplift, flow, k) = (self.tin, self.z, self.uplift, self.flow, self.k);
         let water = Water::new(self.ground());
         let rivers = rivers::trace(water.graph(self.ground()), RIVER_AREA);
@@ -132,12 +164,14 @@ impl LandFiles<'_> {
 
         let texture = if pictures.choice.has_map() {
             let style = MapStyle {
-                title,
+                title: title.clone(),
+                cuts: cuts.iter().map(|cut| cut.ends).collect(),
                 ..MapStyle::default()
             };
             let png = map_png(&surface, &style)?;
             out.write("picture.png", |w| w.write_all(&png))
                 .map_err(Failure::other)?;
+            write_geology(out, &surface, &style)?;
             // The mesh wears the land alone, to the edge.
             let bare = MapStyle {
                 marks: false,
@@ -153,8 +187,10 @@ impl LandFiles<'_> {
             render::write(gpu, &surface, out)?;
         }
         timings.lap("picture");
+        slice::write(out, &surface, &cuts, &title, size)?;
+        timings.lap("slices");
 
-        write_height_maps(out, &surface.height, &uplift_map, &surface.drainage.data)?;
+        write_height_maps(out, &surface, &uplift_map)?;
         timings.lap("height_maps");
         let mesh = Mesh {
             positions: tin.positions(),
@@ -165,7 +201,7 @@ impl LandFiles<'_> {
             drainage: flow.drainage(),
             uplift,
             receivers: water.receivers(),
-            layers: &vec![0; tin.len()],
+            layers: &node_layers(&surface, tin, z),
             erodibility: k,
         };
         out.write("terrain.ply", |w| ply::write(w, mesh, values))
@@ -175,6 +211,12 @@ impl LandFiles<'_> {
         })
         .map_err(Failure::other)?;
         write_rivers(out, tin, &rivers)?;
+        if surface.strata.is_some() {
+            out.write("folds.geojson", |w| {
+                geojson::write_folds(w, tin.extent(), &surface.folds)
+            })
+            .map_err(Failure::other)?;
+        }
         timings.lap("meshes");
         Ok(())
     }
@@ -188,10 +230,14 @@ impl LandFiles<'_> {
     }
 
     fn surface(self, survey: &mut Survey) -> Surface {
-        let bare = survey.surface(self.ground(), self.elapsed_yr);
+        let mut bare = survey.surface(self.ground(), self.elapsed_yr);
+        if let Some(under) = &self.under {
+            survey.draw_layers(under, &mut bare);
+        }
         Surface {
             plates: self.marks.plates,
             faults: self.marks.faults,
+            folds: self.marks.folds,
             ..bare
         }
     }
@@ -215,15 +261,63 @@ pub(super) fn png(image: &RgbaImage) -> Result<Vec<u8>, Failure> {
     Ok(png.into_inner())
 }
 
-fn write_height_maps(out: &OutDir, height: &Raster, uplift: &[f32], drainage: &[f32]) -> Result<(), Failure> {
+/// The geological map, where the layers are known; its land is as large as that of the picture.
+fn write_geology(out: &OutDir, surface: &Surface, style: &MapStyle) -> Result<(), Failure> {
+    /// Width of map and key against that of the map.
+    const WITH_KEY: f64 = 1.17;
+    let (width, height) = (surface.height.width, surface.height.height as u32);
+    let wide = (width as f64 * WITH_KEY).round() as u32;
+    let Some(map) = geological_map(surface, style, wide, height) else {
+        return Ok(());
+    };
+    let png = png(&map)?;
+    out.write("geology.png", |w| w.write_all(&png))
+        .map(drop)
+        .map_err(Failure::other)
+}
+
+/// The layer at the surface of each node, 0 where the layers are not known.
+fn node_layers(surface: &Surface, tin: &Tin, z: &[f64]) -> Vec<u32> {
+    let Some(strata) = surface.strata.as_deref() else {
+        return vec![0; tin.len()];
+    };
+    let nodes = tin.positions().iter().zip(z);
+    nodes
+        .map(|(&p, &z)| strata.stratigraphy.place(strata.exposed_depth(p, z)).layer as u32)
+        .collect()
+}
+
+/// The layers on the cells of the heights: layer at the surface, its depth before folding, sediment on it.
+fn strata_channels(surface: &Surface) -> Option<[(&'static str, Vec<f32>); 3]> {
+    let strata = surface.strata.as_deref()?;
+    let height = &surface.height;
+    let cells = (0..height.data.len()).map(|cell| height.centre(cell % height.width, cell / height.width));
+    let depth: Vec<f64> = cells
+        .clone()
+        .map(|p| strata.exposed_depth(p, surface.ground(p)))
+        .collect();
+    let layer = |&depth: &f64| strata.stratigraphy.place(depth).layer as f32;
+    Some([
+        ("layer", depth.iter().map(layer).collect()),
+        ("strat_depth_m", depth.iter().map(|&d| d as f32).collect()),
+        ("sediment_m", cells.map(|p| strata.sediment.sample(p)).collect()),
+    ])
+}
+
+fn write_height_maps(out: &OutDir, surface: &Surface, uplift: &[f32]) -> Result<(), Failure> {
+    let height = &surface.height;
     let slope = height.slope();
-    let drainage_km2: Vec<f32> = drainage.iter().map(|a| a / 1e6).collect();
-    let channels: [(&str, &[f32]); 4] = [
+    let drainage_km2: Vec<f32> = surface.drainage.data.iter().map(|a| a / 1e6).collect();
+    let strata = strata_channels(surface);
+    let mut channels: Vec<(&str, &[f32])> = vec![
         ("height_m", &height.data),
         ("uplift_m_per_yr", uplift),
         ("drainage_km2", &drainage_km2),
         ("slope", &slope.data),
     ];
+    for (name, values) in strata.iter().flatten() {
+        channels.push((name, values));
+    }
     out.write("height.exr", |w| {
         exr::write(w, height.width, height.height, &channels)
     })
@@ -269,7 +363,13 @@ pub(super) fn land_of<'a>(sim: &'a Sim, flow: &'a Flow, k: &'a [f64], title: &'a
         marks: Marks {
             plates: sim.plate_marks(),
             faults: sim.fault_traces(),
+            folds: sim.fold_lines(usize::MAX),
+            cuts: [Side::South, Side::North]
+                .into_iter()
+                .filter_map(|side| sim.cut(side).cloned())
+                .collect(),
         },
+        under: Some(sim.underground()),
         elapsed_yr: world.time_yr,
     }
 }

@@ -9,12 +9,13 @@ use indicatif::ProgressBar;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings, draw_frame, land_of, write_json};
-use super::{Common, PictureChoice, ReplayArgs, on_threads};
+use super::{Common, PictureChoice, ReplayArgs, on_threads, slice};
 use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
-use crate::mountain::MountainParams;
+use crate::input::pile::named_pile;
 use crate::report::Report;
+use crate::rock::preset;
 use crate::sim::{Sim, SimParams, World};
 use crate::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
@@ -42,8 +43,10 @@ pub(super) fn builtin(console: Console) -> Result<(), Failure> {
             picture: PictureChoice::Map,
         },
         years: None,
+        layers: preset::names()[0].to_owned(),
         paper: false,
         every: None,
+        slices: Vec::new(),
     };
     run(&args, console)
 }
@@ -80,7 +83,18 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
         }
         sessions.push((stem, file));
     }
-    let pictures = Pictures::new(args.common.picture)?;
+    if args.slices.len() > slice::MOST {
+        return Err(Failure::input(format!(
+            "--slice: expected at most {} of them, found {}",
+            slice::MOST,
+            args.slices.len()
+        )));
+    }
+    for (_, file) in &sessions {
+        // A slice that misses the land is refused before the work.
+        slice::on_land(&args.slices, plan(file).extent())?;
+    }
+    let pictures = Pictures::new(args.common.picture)?.with_slices(&args.slices);
     on_threads(args.common.threads, || {
         for (stem, file) in &sessions {
             for warning in &file.warnings {
@@ -105,6 +119,11 @@ fn stem(path: &Path) -> String {
     }
 }
 
+/// Where the table of `file` lies on the ground.
+fn plan(file: &GestureFile) -> PlanMap {
+    PlanMap::new(file.header.size_mm, DEFAULT_SHORT_SIDE)
+}
+
 /// The session of `file`, before its first tick.
 fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
     let header = &file.header;
@@ -115,10 +134,11 @@ fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
         .or(header.nodes)
         .unwrap_or(DEFAULT_NODES) as usize;
     let seed = args.common.seed.or(header.seed).unwrap_or(DEFAULT_SEED);
-    let mut params = SimParams::default();
-    if args.paper {
-        params.mountain = MountainParams::paper();
-    }
+    let mut params = if args.paper {
+        SimParams::paper()
+    } else {
+        SimParams::default()
+    };
     if let Some(years) = args.years.or(header.years) {
         params.run_on_yr = years;
     }
@@ -127,9 +147,9 @@ fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
         // Nobody will look back.
         params.history_bytes = 0;
     }
-    let map = PlanMap::new(header.size_mm, DEFAULT_SHORT_SIDE);
-    let world = World::new(map, nodes, seed).map_err(Failure::input)?;
-    Ok(Sim::new(world, params))
+    let world = World::new(plan(file), nodes, seed).map_err(Failure::input)?;
+    let pile = named_pile(&args.layers, Path::new("")).map_err(Failure::input)?;
+    Ok(Sim::new(world.with_layers(pile), params))
 }
 
 fn play(

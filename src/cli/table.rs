@@ -50,6 +50,7 @@ fn options(args: &TableArgs, kiosk: bool) -> Options {
         monitor: args.monitor.map(usize::from),
         mode: args.mode.map(|ModeChoice::Mountain| Mode::Mountain),
         settings: args.settings.clone(),
+        layers: args.layers.clone(),
         metrics: args.metrics.clone(),
         save: Arc::new(|land, path| save_land(land, path).map_err(|failure| failure.to_string())),
     }
@@ -74,7 +75,7 @@ fn failure(error: AppError) -> Failure {
         AppError::NoDisplay(why) | AppError::NoGraphics(why) => Failure::no_display(format!(
             "{why}; start it where a display is, or use `orogen replay`, which needs none"
         )),
-        AppError::Settings(_) | AppError::File(..) => Failure::input(error),
+        AppError::Settings(_) | AppError::Layers(_) | AppError::File(..) => Failure::input(error),
         AppError::Other(_) => Failure::other(error),
     }
 }

@@ -1,32 +1,33 @@
-//! `rivers.geojson`: rivers as lines (Butler et al. 2016, RFC 7946).
+//! `rivers.geojson` and `folds.geojson`: rivers, crests and troughs as lines (Butler et al. 2016, RFC 7946).
 //!
 //! The land has no place on the Earth, so coordinates are not longitude and latitude but plan kilometres: x east,
 //! y north, from the south-west corner. The collection says so in its member `frame`.
 
 use std::io::{self, Write};
 
+use glam::DVec2;
 use serde::Serialize;
 
-use crate::surface::River;
+use crate::surface::{FoldLine, River};
 use crate::units::{Extent, KM};
 
 #[derive(Serialize)]
-struct Collection {
+struct Collection<P> {
     r#type: &'static str,
     frame: &'static str,
     bbox: [f64; 4],
-    features: Vec<Feature>,
+    features: Vec<Feature<P>>,
 }
 
 #[derive(Serialize)]
-struct Feature {
+struct Feature<P> {
     r#type: &'static str,
-    properties: Properties,
+    properties: P,
     geometry: Line,
 }
 
 #[derive(Serialize)]
-struct Properties {
+struct RiverProperties {
     strahler_order: u32,
     length_km: f64,
     /// Per vertex, downstream.
@@ -44,34 +45,69 @@ struct Line {
 ///
 /// # Errors
 /// Where `out` fails.
-pub fn write_rivers(mut out: impl Write, extent: Extent, rivers: &[River]) -> io::Result<()> {
+pub fn write_rivers(out: impl Write, extent: Extent, rivers: &[River]) -> io::Result<()> {
+    let features = rivers.iter().map(|river| {
+        let properties = RiverProperties {
+            strahler_order: river.order,
+            length_km: rounded(river.length() / KM, 1e4),
+            drainage_km2: river
+                .points
+                .iter()
+                .map(|p| rounded(p.drainage / (KM * KM), 1e3))
+                .collect(),
+        };
+        feature(properties, river.points.iter().map(|p| p.at))
+    });
+    write_lines(out, extent, features.collect())
+}
+
+#[derive(Serialize)]
+struct FoldProperties {
+    kind: &'static str,
+    layer: usize,
+    wavelength_m: f64,
+}
+
+/// Writes crests and troughs of folds as a feature collection of lines, with `kind` (`top` or `bottom`), the layer that
+/// folds, and the wavelength. Positions are rounded to 0.1 m, wavelengths too.
+///
+/// # Errors
+/// Where `out` fails.
+pub fn write_folds(out: impl Write, extent: Extent, folds: &[FoldLine]) -> io::Result<()> {
+    let features = folds.iter().map(|fold| {
+        let properties = FoldProperties {
+            kind: if fold.crest { "top" } else { "bottom" },
+            layer: fold.layer,
+            wavelength_m: rounded(fold.wavelength_m, 10.0),
+        };
+        feature(properties, fold.points.iter().copied())
+    });
+    write_lines(out, extent, features.collect())
+}
+
+fn feature<P>(properties: P, line: impl Iterator<Item = DVec2>) -> Feature<P> {
+    Feature {
+        r#type: "Feature",
+        properties,
+        geometry: Line {
+            r#type: "LineString",
+            coordinates: line
+                .map(|p| [rounded(p.x / KM, 1e4), rounded(p.y / KM, 1e4)])
+                .collect(),
+        },
+    }
+}
+
+fn write_lines(
+    mut out: impl Write,
+    extent: Extent,
+    features: Vec<Feature<impl Serialize>>,
+) -> io::Result<()> {
     let collection = Collection {
         r#type: "FeatureCollection",
         frame: "plan kilometres, x east, y north, origin south-west corner",
         bbox: [0.0, 0.0, extent.width / KM, extent.height / KM],
-        features: rivers
-            .iter()
-            .map(|river| Feature {
-                r#type: "Feature",
-                properties: Properties {
-                    strahler_order: river.order,
-                    length_km: rounded(river.length() / KM, 1e4),
-                    drainage_km2: river
-                        .points
-                        .iter()
-                        .map(|p| rounded(p.drainage / (KM * KM), 1e3))
-                        .collect(),
-                },
-                geometry: Line {
-                    r#type: "LineString",
-                    coordinates: river
-                        .points
-                        .iter()
-                        .map(|p| [rounded(p.at.x / KM, 1e4), rounded(p.at.y / KM, 1e4)])
-                        .collect(),
-                },
-            })
-            .collect(),
+        features,
     };
     serde_json::to_writer(&mut out, &collection)?;
     out.write_all(b"\n")

@@ -11,6 +11,7 @@ pub mod glb;
 pub mod height16;
 mod out_dir;
 pub mod ply;
+pub mod svg;
 
 use glam::DVec2;
 

@@ -15,7 +15,14 @@
 //! | `edit_arrow` | `{"from": [x, y], "to": [x, y]}` mm | the arrow tip at `from` is dragged to `to` |
 //! | `flip_fault` | `[x, y]` mm | the fault there leans the other way |
 //! | `start_over` | `true` | the land starts afresh, from the seed |
-//! | `layers` | a text of 1 to 64 characters | the rock layers become this preset |
+//! | `layers` | a text of 1 to 64 characters | the rock under the land becomes this preset |
+//! | `pile` | the text of a pile's TOML file | the rock under the land becomes this pile |
+//! | `turn_folds` | 2 to 64 positions `[[x, y], …]` mm | fold ridges near this line turn to its direction |
+//! | `raise_folds` | `{"path": positions, "by": 0 to 3}` | folds along the line grow by this factor (1: as they would) |
+//! | `slice` | `{"from": [x, y], "to": [x, y]}` mm | the cross-section runs between these ends |
+//! | `freeze_slice` | `true` or `false` | the cross-section stays as it is, or follows the land again |
+//! | `label_slice` | `{"at": 0 to 1, "text": 1 to 64 characters}` | a note at this part of the cross-section's length |
+//! | `close_slice` | `true` | the cross-section and its notes go |
 //! | `view` | `{"lon": degrees, "lat": degrees, "zoom": factor}` | the globe is looked at from there |
 //! | `earth` | `true` | the globe starts from Earth |
 //! | `scrub` | 0 to 1e9 | the land comes back as it was after these years, and the clock stops |
@@ -24,15 +31,16 @@
 //! it came from. Words, tools and modes that are not in the table belong to a newer program: they are ignored and
 //! counted. A word of the table with a value of the wrong kind is refused.
 
-use std::fmt::Write as _;
+mod write;
+
+use std::sync::Arc;
 
 use glam::DVec2;
 use serde_json::{Map, Value};
 
 use super::contact::Side;
-use super::json::{
-    Expected, number, object, position, text, whole, write_number, write_position, write_text,
-};
+use super::json::{Expected, number, object, position, text, whole};
+use crate::rock::Stratigraphy;
 
 /// Greatest speed of the geological clock, My per second.
 pub const MAX_SPEED: f64 = 100.0;
@@ -40,8 +48,14 @@ pub const MAX_SPEED: f64 = 100.0;
 /// Greatest age of a world, years.
 pub const MAX_YEARS: f64 = 1e9;
 
-/// Most characters of the name of a layer preset.
-pub const MAX_PRESET_CHARS: usize = 64;
+/// Most characters of the name of a layer preset and of a note.
+pub const MAX_TEXT_CHARS: usize = 64;
+
+/// Fewest and most positions of a line drawn along folds.
+pub const PATH_POINTS: (usize, usize) = (2, 64);
+
+/// Greatest factor on the height of folds.
+pub const MAX_RAISE: f64 = 3.0;
 
 /// How near to a tip or a fault an edit must be, table mm: the width of a finger and a bit.
 pub const REACH_MM: f64 = 25.0;
@@ -91,8 +105,35 @@ pub enum Action {
     },
     /// Start the land afresh.
     StartOver,
-    /// Take a preset of rock layers.
+    /// Lay a preset of rock layers under the land.
     Layers(String),
+    /// Lay a pile of rock layers under the land.
+    Pile(Arc<Stratigraphy>),
+    /// Turn fold ridges to a line.
+    TurnFolds {
+        /// Table mm, [`PATH_POINTS`] of them.
+        path: Vec<DVec2>,
+    },
+    /// Raise or lower the folds along a line.
+    RaiseFolds {
+        /// Table mm, [`PATH_POINTS`] of them.
+        path: Vec<DVec2>,
+        /// Factor on their height, 0 to [`MAX_RAISE`].
+        by: f64,
+    },
+    /// Set the ends of the cross-section.
+    Slice(Arrow),
+    /// Let the cross-section stay as it is, or follow the land again.
+    FreezeSlice(bool),
+    /// Put a note on the cross-section.
+    LabelSlice {
+        /// Part of its length, 0 to 1.
+        at: f64,
+        /// The note.
+        text: String,
+    },
+    /// Take the cross-section away.
+    CloseSlice,
     /// Look at the globe from somewhere.
     View {
         /// Longitude, degrees, −180 to 180.
@@ -108,17 +149,17 @@ pub enum Action {
     Scrub(f64),
 }
 
-/// Two ends of an arrow on the table, mm.
+/// Two ends of an arrow, or of a cross-section, on the table, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrow {
-    /// Where the arrow begins (`add_arrow`), or where its tip was (`edit_arrow`).
+    /// Where it begins (`edit_arrow`: where its tip was).
     pub from: DVec2,
-    /// Where its tip is now.
+    /// Where it ends (`edit_arrow`: where its tip is now).
     pub to: DVec2,
 }
 
 /// What fingers on the table do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Tool {
     /// Hands are plates.
     #[default]
@@ -277,14 +318,23 @@ fn parse_word(word: &str, value: &Value, field: &str) -> Result<Option<Action>, 
             at: position(value, field)?,
         }),
         "start_over" => pressed(Action::StartOver)?,
-        "layers" => {
-            let name = text(value, field)?;
-            if name.is_empty() || name.chars().count() > MAX_PRESET_CHARS {
-                let what = format!("a preset's name of 1..={MAX_PRESET_CHARS} characters");
-                return Err(Expected::new(field, what, value));
-            }
-            Some(Action::Layers(name.to_owned()))
+        "layers" => Some(Action::Layers(short_text(value, field)?)),
+        "pile" => {
+            let pile = Stratigraphy::parse(text(value, field)?.as_bytes(), "pile")
+                .map_err(|error| Expected::new(field, format!("a pile ({error})"), value))?;
+            Some(Action::Pile(Arc::new(pile)))
         }
+        "turn_folds" => Some(Action::TurnFolds {
+            path: parse_path(value, field)?,
+        }),
+        "raise_folds" => Some(parse_raise(value, field)?),
+        "slice" => Some(Action::Slice(parse_arrow(value, field)?)),
+        "freeze_slice" => match value {
+            Value::Bool(frozen) => Some(Action::FreezeSlice(*frozen)),
+            _ => return Err(Expected::new(field, "true or false", value)),
+        },
+        "label_slice" => Some(parse_label(value, field)?),
+        "close_slice" => pressed(Action::CloseSlice)?,
         "view" => Some(parse_view(value, field)?),
         "earth" => pressed(Action::Earth)?,
         "scrub" => Some(Action::Scrub(number(value, field, "years", 0.0, MAX_YEARS)?)),
@@ -318,6 +368,44 @@ fn parse_arrow(value: &Value, field: &str) -> Result<Arrow, Expected> {
     })
 }
 
+fn short_text(value: &Value, field: &str) -> Result<String, Expected> {
+    let found = text(value, field)?;
+    if found.is_empty() || found.chars().count() > MAX_TEXT_CHARS {
+        let what = format!("a text of 1..={MAX_TEXT_CHARS} characters");
+        return Err(Expected::new(field, what, value));
+    }
+    Ok(found.to_owned())
+}
+
+fn parse_path(value: &Value, field: &str) -> Result<Vec<DVec2>, Expected> {
+    let (least, most) = PATH_POINTS;
+    let points = value
+        .as_array()
+        .filter(|points| (least..=most).contains(&points.len()));
+    let points =
+        points.ok_or_else(|| Expected::new(field, format!("{least} to {most} positions [x, y]"), value))?;
+    let point = |(i, value)| position(value, &format!("{field}[{i}]"));
+    points.iter().enumerate().map(point).collect()
+}
+
+fn parse_raise(value: &Value, field: &str) -> Result<Action, Expected> {
+    let map = object(value, field, "{\"path\":[[x,y],…],\"by\":factor}")?;
+    let (points, path_field) = member(map, "path", field, "positions [x, y]")?;
+    let path = parse_path(points, &path_field)?;
+    let (by, by_field) = member(map, "by", field, "a factor")?;
+    let by = number(by, &by_field, "a factor", 0.0, MAX_RAISE)?;
+    Ok(Action::RaiseFolds { path, by })
+}
+
+fn parse_label(value: &Value, field: &str) -> Result<Action, Expected> {
+    let map = object(value, field, "{\"at\":part,\"text\":\"…\"}")?;
+    let (at, at_field) = member(map, "at", field, "a part of the length")?;
+    let at = number(at, &at_field, "a part of the length", 0.0, 1.0)?;
+    let (note, note_field) = member(map, "text", field, "a note")?;
+    let text = short_text(note, &note_field)?;
+    Ok(Action::LabelSlice { at, text })
+}
+
 fn parse_view(value: &Value, field: &str) -> Result<Action, Expected> {
     let map = object(value, field, "{\"lon\":degrees,\"lat\":degrees,\"zoom\":factor}")?;
     let angle = |key, limit: f64| {
@@ -346,6 +434,13 @@ impl Action {
             Self::FlipFault { .. } => "flip_fault",
             Self::StartOver => "start_over",
             Self::Layers(_) => "layers",
+            Self::Pile(_) => "pile",
+            Self::TurnFolds { .. } => "turn_folds",
+            Self::RaiseFolds { .. } => "raise_folds",
+            Self::Slice(_) => "slice",
+            Self::FreezeSlice(_) => "freeze_slice",
+            Self::LabelSlice { .. } => "label_slice",
+            Self::CloseSlice => "close_slice",
             Self::View { .. } => "view",
             Self::Earth => "earth",
             Self::Scrub(_) => "scrub",
@@ -362,132 +457,7 @@ impl Command {
             contact: None,
         }
     }
-
-    /// Writes the canonical form: the word, then side and contact where known; no spaces; mm with two decimals.
-    pub fn write_json(&self, out: &mut String) {
-        let _ = write!(out, "{{\"{}\":", self.action.word());
-        match &self.action {
-            Action::Tool(tool) => write_text(out, tool.name()),
-            Action::Mode(mode) => write_text(out, mode.name()),
-            Action::Play | Action::Pause | Action::Undo | Action::StartOver | Action::Earth => {
-                out.push_str("true");
-            }
-            Action::Speed(v) | Action::Scrub(v) => write_number(out, *v),
-            Action::Remove { at } | Action::FlipFault { at } => write_position(out, *at),
-            Action::AddArrow(arrow) | Action::EditArrow(arrow) => {
-                out.push_str("{\"from\":");
-                write_position(out, arrow.from);
-                out.push_str(",\"to\":");
-                write_position(out, arrow.to);
-                out.push('}');
-            }
-            Action::Layers(name) => write_text(out, name),
-            Action::View { lon, lat, zoom } => {
-                for (start, value) in [("{\"lon\":", lon), (",\"lat\":", lat), (",\"zoom\":", zoom)] {
-                    out.push_str(start);
-                    write_number(out, *value);
-                }
-                out.push('}');
-            }
-        }
-        match self.side {
-            None => {}
-            Some(Side::North) => out.push_str(",\"side\":\"north\""),
-            Some(Side::South) => out.push_str(",\"side\":\"south\""),
-        }
-        if let Some(contact) = self.contact {
-            let _ = write!(out, ",\"contact\":{contact}");
-        }
-        out.push('}');
-    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn one_of_each() -> Vec<Action> {
-        let arrow = Arrow {
-            from: DVec2::new(1.25, 2.0),
-            to: DVec2::new(-3.0, 4.5),
-        };
-        let mut all: Vec<Action> = Tool::ALL.into_iter().map(Action::Tool).collect();
-        all.extend([
-            Action::Mode(Mode::Mountain),
-            Action::Mode(Mode::Globe),
-            Action::Play,
-            Action::Pause,
-            Action::Speed(0.25),
-            Action::Undo,
-            Action::Remove { at: arrow.from },
-            Action::AddArrow(arrow),
-            Action::EditArrow(arrow),
-            Action::FlipFault { at: arrow.to },
-            Action::StartOver,
-            Action::Layers("thin \"skin\"".to_owned()),
-            Action::View {
-                lon: -12.5,
-                lat: 80.0,
-                zoom: 1.5,
-            },
-            Action::Earth,
-            Action::Scrub(2.5e6),
-        ]);
-        all
-    }
-
-    fn reread(json: &str) -> Result<Parsed, Expected> {
-        parse(&serde_json::from_str(json).unwrap())
-    }
-
-    #[test]
-    fn every_word_comes_back_as_it_was_written() {
-        for (i, action) in one_of_each().into_iter().enumerate() {
-            let command = Command {
-                action,
-                side: [None, Some(Side::North), Some(Side::South)][i % 3],
-                contact: [None, Some(u64::MAX)][i % 2],
-            };
-            let mut json = String::new();
-            command.write_json(&mut json);
-            let parsed = reread(&json).unwrap();
-            assert_eq!(parsed.commands, [command], "{json}");
-            assert!(parsed.unknown.is_empty());
-        }
-    }
-
-    #[test]
-    fn unknown_words_and_names_are_counted_and_the_rest_is_done() {
-        let parsed = reread(r#"[{"dance":1},{"tool":"rake"},{"tool":"slice","side":"south"}]"#).unwrap();
-        assert_eq!(parsed.unknown, ["dance", "tool \"rake\""]);
-        assert_eq!(parsed.commands.len(), 1);
-        assert_eq!(parsed.commands[0].side, Some(Side::South));
-    }
-
-    #[test]
-    fn known_words_of_the_wrong_kind_are_refused_by_path() {
-        for (json, field) in [
-            (r#"{"tool":3}"#, "do.tool"),
-            (r#"{"mode":null}"#, "do.mode"),
-            (r#"{"play":1}"#, "do.play"),
-            (r#"{"pause":false}"#, "do.pause"),
-            (r#"{"speed":"fast"}"#, "do.speed"),
-            (r#"{"speed":-1}"#, "do.speed"),
-            (r#"{"remove":[1]}"#, "do.remove"),
-            (r#"{"add_arrow":{"from":[0,0]}}"#, "do.add_arrow.to"),
-            (
-                r#"{"edit_arrow":{"from":[0,0],"to":[1e30,0]}}"#,
-                "do.edit_arrow.to",
-            ),
-            (r#"{"layers":""}"#, "do.layers"),
-            (r#"{"view":{"lon":0,"lat":91,"zoom":1}}"#, "do.view.lat"),
-            (r#"{"scrub":1e10}"#, "do.scrub"),
-            (r#"{"undo":true,"side":"east"}"#, "do.side"),
-            (r#"{"undo":true,"contact":-1}"#, "do.contact"),
-            (r#"[{"undo":true},{"play":2}]"#, "do[1].play"),
-            ("7", "do"),
-        ] {
-            assert_eq!(reread(json).unwrap_err().field, field, "{json}");
-        }
-    }
-}
+mod tests;

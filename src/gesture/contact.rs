@@ -146,4 +146,13 @@ impl Side {
             Self::South
         }
     }
+
+    /// The side across the table.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::North => Self::South,
+            Self::South => Self::North,
+        }
+    }
 }

@@ -1,5 +1,6 @@
-//! What comes from outside: maps, recordings of other tools that become contacts, and the touches of a window.
+//! What comes from outside: maps, piles of rock, recordings of other tools that become contacts, and the touches of a window.
 
 pub mod evemu;
 pub mod maps;
+pub mod pile;
 pub mod window;

@@ -2,13 +2,15 @@
 
 use glam::DVec2;
 
+use crate::gesture::command::Tool;
 use crate::gesture::contact::Side;
 
-/// What a control does. Few, and the same on both long sides.
+/// What a control does. Few, and the same on both long sides. The slider and the two of the cross-section are there
+/// only while there is something for them to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ControlKind {
-    /// The side's hands push, or edit (`on`).
-    Tool,
+    /// The side takes this tool (`on`), or its hands push again.
+    Tool(Tool),
     /// Brings back the land that the side's last push found.
     Undo,
     /// The geological clock runs (`on`) or stands.
@@ -23,6 +25,10 @@ pub enum ControlKind {
     Readouts,
     /// The land is saved; absent on unattended tables.
     Save,
+    /// The side's cross-section stays as it is (`on`), or follows the land.
+    FreezeSlice,
+    /// The side's cross-section goes.
+    CloseSlice,
 }
 
 /// One control as it is now. Table millimetres.
@@ -52,6 +58,39 @@ pub struct ControlView {
     pub value: f64,
     /// A hand is near or has just been, 0–1: far from hands controls stay quiet.
     pub glow: f64,
+}
+
+/// The sheet on which a side sees its cross-section. Table millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Paper {
+    /// The side it belongs to.
+    pub side: Side,
+    /// Its middle.
+    pub centre_mm: DVec2,
+    /// Half of its width and height.
+    pub half_size_mm: DVec2,
+    /// Height of the strip along its far edge, as the side sees it, that its controls stand in.
+    pub strip_mm: f64,
+    /// Clockwise angle by which it is turned to be read from its side, radians.
+    pub rotation: f64,
+}
+
+impl Paper {
+    /// True for places on it.
+    pub fn holds(&self, place: DVec2) -> bool {
+        (place - self.centre_mm).abs().cmple(self.half_size_mm).all()
+    }
+
+    /// A place on it in parts of its size, from its top left corner as its side reads it.
+    pub fn part(&self, place: DVec2) -> DVec2 {
+        let from_centre = (place - self.centre_mm) / (2.0 * self.half_size_mm);
+        let read = if self.side == Side::North {
+            -from_centre
+        } else {
+            from_centre
+        };
+        read + 0.5
+    }
 }
 
 /// Names a control.

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use crate::gesture::command::Command;
+use crate::gesture::command::{Command, Tool};
 use crate::gesture::contact::Side;
 use crate::live::Clock;
-use crate::surface::{FaultTrace, PlateMark};
+use crate::surface::{Cut, FaultTrace, PlateMark};
 use crate::units::PlanMap;
 
 /// Where a contact goes, from where it lands to where it lifts.
@@ -13,10 +13,10 @@ use crate::units::PlanMap;
 pub enum Route {
     /// To the session: it sculpts.
     Land,
-    /// It is on a control.
+    /// It is on a control, or on the sheet of a cross-section.
     Control,
-    /// It edits standing plates.
-    Edit,
+    /// It is a tool's: it edits standing plates or folds, or sets a cross-section.
+    Tool,
     /// It is on a panel (the staff menu), which is asked for what it means.
     Panel,
     /// It is in the staff's corner, and sculpts nothing even if it moves.
@@ -34,6 +34,8 @@ pub struct Scene<'a> {
     pub plates: &'a [PlateMark],
     /// Faults between them (plan metres).
     pub faults: &'a [FaultTrace],
+    /// Cross-sections of the north and south side (plan metres).
+    pub cuts: &'a [Option<Cut>; 2],
     /// Table ↔ plan.
     pub map: PlanMap,
     /// The geological clock.
@@ -61,6 +63,13 @@ pub enum Deed {
         /// The side that asked.
         side: Side,
     },
+    /// Somebody has tapped on the sheet of a cross-section, to put a note there.
+    Note {
+        /// The side whose sheet it is.
+        side: Side,
+        /// Where, in parts of the sheet's size from its top left corner, as its side reads it.
+        at: DVec2,
+    },
 }
 
 /// Keys that stand in for the controls of the south side.
@@ -71,7 +80,7 @@ pub enum Key {
     /// As [`super::ControlKind::Undo`].
     Undo,
     /// As [`super::ControlKind::Tool`].
-    Tool,
+    Tool(Tool),
     /// As [`super::ControlKind::Readouts`].
     Readouts,
     /// As [`super::ControlKind::Save`].
@@ -124,4 +133,42 @@ pub enum Editing {
     Fault,
     /// It has removed a plate.
     Removed,
+}
+
+/// A line that a side has drawn along folds, and the handle that raises them. Table millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoldHandle<'a> {
+    /// The side it belongs to.
+    pub side: Side,
+    /// The line.
+    pub path: &'a [DVec2],
+    /// Its middle, where the handle stands when folds are as they would be.
+    pub middle: DVec2,
+    /// Where the handle is: away from its side raises.
+    pub at: DVec2,
+    /// Where it stands when folds are flat.
+    pub lowest: DVec2,
+    /// Where it stands when they are as high as they may be made.
+    pub highest: DVec2,
+    /// Factor on the height of the folds.
+    pub by: f64,
+    /// A finger holds it.
+    pub held: bool,
+}
+
+/// The cross-section of a side on the land. Table millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SliceView {
+    /// The side it belongs to.
+    pub side: Side,
+    /// Its ends; the same twice while there is only the first.
+    pub ends: [DVec2; 2],
+    /// False while the second end is not yet there.
+    pub whole: bool,
+    /// Which ends fingers hold.
+    pub held: [bool; 2],
+    /// Its ends can be taken hold of.
+    pub handles: bool,
+    /// It stays as it is.
+    pub frozen: bool,
 }

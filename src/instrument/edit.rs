@@ -232,7 +232,8 @@ fn distance_to(place: DVec2, a: DVec2, b: DVec2) -> f64 {
     place.distance(a + along * part.clamp(0.0, 1.0))
 }
 
-fn on_raster(at: DVec2) -> DVec2 {
+/// The place on the raster of gesture files.
+pub(super) fn on_raster(at: DVec2) -> DVec2 {
     DVec2::new(quantise_mm(at.x), quantise_mm(at.y))
 }
 

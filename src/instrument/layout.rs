@@ -1,10 +1,12 @@
-//! Where the controls are: a row along each long side, turned towards it.
+//! Where the controls are: a row along each long side, turned towards it, and beside it the sheet of the side's
+//! cross-section.
 
 use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::control::{ControlId, ControlKind};
+use super::control::{ControlId, ControlKind, Paper};
+use crate::gesture::command::Tool;
 use crate::gesture::contact::Side;
 use crate::settings::CORNER_MM;
 
@@ -36,9 +38,27 @@ const HOLDS: f64 = 0.21;
 /// Length of the slider, in sizes of a control.
 const SLIDER: f64 = 11.0;
 
+/// The sheet of a cross-section beside the row: least part of the table's width, part of its height, most height (mm),
+/// most width for its height. What is more is out of a seated visitor's sight.
+const LEAST_PAPER: f64 = 0.2;
+const PAPER_PART: f64 = 0.3;
+const MOST_PAPER_MM: f64 = 420.0;
+const MOST_ASPECT: f64 = 2.2;
+
+/// Parts of the table that the sheet takes behind the row.
+const BEHIND: DVec2 = DVec2::new(0.72, 0.2);
+
+/// Gap around the controls in the sheet's strip, in sizes of a control.
+const STRIP_GAP: f64 = 0.2;
+
 /// Controls from left to right, as the side reads them, in groups. [`ControlKind::Scrub`] lies behind them.
 const GROUPS: [&[ControlKind]; 3] = [
-    &[ControlKind::Tool, ControlKind::Undo],
+    &[
+        ControlKind::Tool(Tool::Edit),
+        ControlKind::Tool(Tool::Fold),
+        ControlKind::Tool(Tool::Slice),
+        ControlKind::Undo,
+    ],
     &[ControlKind::PlayPause, ControlKind::Speed],
     &[ControlKind::StartOver, ControlKind::Readouts, ControlKind::Save],
 ];
@@ -90,16 +110,20 @@ impl Placed {
     }
 }
 
-/// The controls of both sides of a table of `size_mm`; `save` is left out on unattended tables.
-pub(super) fn layout(size_mm: DVec2, unattended: bool) -> Vec<Placed> {
+/// Controls and sheets of both sides of a table.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// North side first.
+    pub(super) placed: Vec<Placed>,
+    /// Of the north and the south side.
+    pub(super) papers: [Paper; 2],
+}
+
+/// The controls of both sides of a table of `size_mm`, as far as they are `offered`.
+pub(super) fn layout(size_mm: DVec2, offered: impl Fn(ControlKind) -> bool) -> Layout {
     let groups: Vec<Vec<ControlKind>> = GROUPS
         .iter()
-        .map(|group| {
-            let kinds = group.iter().copied();
-            kinds
-                .filter(|kind| !(unattended && *kind == ControlKind::Save))
-                .collect()
-        })
+        .map(|group| group.iter().copied().filter(|&kind| offered(kind)).collect())
         .collect();
     let kinds = groups.iter().map(Vec::len).sum::<usize>() as f64;
     let gaps = (groups.len() - 1) as f64;
@@ -128,22 +152,64 @@ pub(super) fn layout(size_mm: DVec2, unattended: bool) -> Vec<Placed> {
         DVec2::new(size_mm.x / 2.0, y - (1.0 + GAP) * size),
         DVec2::new(SLIDER * size / 2.0, size / 2.0),
     ));
+    let paper = south_paper(size_mm, size, row * size);
+    // In the sheet's strip, from its right end.
+    let strip_y = paper.centre_mm.y - paper.half_size_mm.y + paper.strip_mm / 2.0;
+    let right = paper.centre_mm.x + paper.half_size_mm.x - STRIP_GAP * size;
+    for (place, kind) in [ControlKind::CloseSlice, ControlKind::FreezeSlice]
+        .into_iter()
+        .enumerate()
+    {
+        let from_right = (0.5 + place as f64 * (1.0 + GAP)) * size;
+        south.push((kind, DVec2::new(right - from_right, strip_y), half));
+    }
+    let turned = |side, at| match side {
+        Side::North => size_mm - at,
+        Side::South => at,
+    };
     let mut placed = Vec::new();
     for side in [Side::North, Side::South] {
         for &(kind, at, half) in &south {
-            let centre = match side {
-                Side::North => size_mm - at,
-                Side::South => at,
-            };
             placed.push(Placed {
                 id: ControlId(side, kind),
-                centre,
+                centre: turned(side, at),
                 half,
                 size,
             });
         }
     }
-    placed
+    let papers = [(Side::North, PI), (Side::South, 0.0)].map(|(side, rotation)| Paper {
+        side,
+        centre_mm: turned(side, paper.centre_mm),
+        rotation,
+        ..paper
+    });
+    Layout { placed, papers }
+}
+
+/// The sheet of the south side, for controls of `size` in a row of `row` mm: to the left of the row, where nobody who
+/// stands at the controls leans; on narrow tables behind the row and the slider.
+fn south_paper(size_mm: DVec2, size: f64, row: f64) -> Paper {
+    let gap = EDGE_GAP * size;
+    let beside = (size_mm.x - row) / 2.0 - GROUP_GAP * size - gap;
+    let (half, centre) = if beside >= LEAST_PAPER * size_mm.x {
+        let height = (PAPER_PART * size_mm.y).min(MOST_PAPER_MM);
+        let width = beside.min(MOST_ASPECT * height);
+        let half = DVec2::new(width, height) / 2.0;
+        let right = gap + beside;
+        (half, DVec2::new(right - half.x, size_mm.y - gap - half.y))
+    } else {
+        let half = size_mm * BEHIND / 2.0;
+        let bottom = size_mm.y - gap - (2.0 + 2.0 * GAP) * size;
+        (half, DVec2::new(size_mm.x / 2.0, bottom - half.y))
+    };
+    Paper {
+        side: Side::South,
+        centre_mm: centre,
+        half_size_mm: half,
+        strip_mm: (1.0 + 2.0 * STRIP_GAP) * size,
+        rotation: 0.0,
+    }
 }
 
 #[cfg(test)]
@@ -168,7 +234,26 @@ mod tests {
         for (width, height) in TABLES {
             let size_mm = DVec2::new(width, height);
             for unattended in [false, true] {
-                let placed = layout(size_mm, unattended);
+                let Layout { placed, papers } =
+                    layout(size_mm, |kind| !(unattended && kind == ControlKind::Save));
+                for paper in papers {
+                    let corner = paper.centre_mm - paper.half_size_mm;
+                    assert!(corner.min_element() >= 0.0, "{size_mm}");
+                    assert!((size_mm - paper.centre_mm - paper.half_size_mm).min_element() >= 0.0);
+                    for corner in [corner, paper.centre_mm + paper.half_size_mm] {
+                        assert_eq!(Side::of(corner, size_mm), paper.side, "{paper:?} on {size_mm}");
+                    }
+                    for control in &placed {
+                        let on_it =
+                            matches!(control.id.1, ControlKind::FreezeSlice | ControlKind::CloseSlice)
+                                && control.id.0 == paper.side;
+                        let gap =
+                            (control.centre - paper.centre_mm).abs() - control.half - paper.half_size_mm;
+                        let within = (gap + 2.0 * control.half).max_element() <= 1e-9;
+                        assert_eq!(within, on_it, "{:?} on {size_mm}", control.id);
+                        assert!(on_it || gap.max_element() > 0.0, "{:?} on {size_mm}", control.id);
+                    }
+                }
                 let least = if size_mm.min_element() >= 250.0 {
                     LEAST_MM
                 } else {
@@ -216,7 +301,13 @@ mod tests {
     #[test]
     fn the_north_row_is_the_south_row_turned_half_round() {
         let size_mm = DVec2::new(1209.6, 680.4);
-        let placed = layout(size_mm, false);
+        let Layout { placed, papers } = layout(size_mm, |_| true);
+        assert!((papers[0].centre_mm + papers[1].centre_mm - size_mm).length() < 1e-9);
+        let corner = papers[0].centre_mm + papers[0].half_size_mm;
+        assert!(
+            papers[0].part(corner).length() < 1e-9,
+            "the north reads it turned"
+        );
         let (north, south) = placed.split_at(placed.len() / 2);
         for (n, s) in north.iter().zip(south) {
             assert_eq!(n.id.1, s.id.1);
@@ -226,19 +317,18 @@ mod tests {
         }
         let at = |kind| south.iter().find(|p| p.id.1 == kind).unwrap().centre.x;
         assert!(
-            at(ControlKind::Tool) < at(ControlKind::Undo),
+            at(ControlKind::Tool(Tool::Edit)) < at(ControlKind::Undo),
             "read from left to right"
         );
         assert!(at(ControlKind::PlayPause) < at(ControlKind::StartOver));
     }
 
     #[test]
-    fn unattended_tables_have_no_save() {
-        let has = |unattended| {
-            layout(DVec2::new(1209.6, 680.4), unattended)
-                .iter()
-                .any(|p| p.id.1 == ControlKind::Save)
-        };
-        assert!(has(false) && !has(true));
+    fn what_is_not_offered_is_not_there() {
+        let fold = ControlKind::Tool(Tool::Fold);
+        let all = layout(DVec2::new(1209.6, 680.4), |_| true).placed;
+        let fewer = layout(DVec2::new(1209.6, 680.4), |kind| kind != fold).placed;
+        assert_eq!(all.len(), fewer.len() + 2);
+        assert!(fewer.iter().all(|placed| placed.id.1 != fold));
     }
 }

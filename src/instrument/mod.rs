@@ -1,4 +1,4 @@
-//! Whose contact is it: the land's, the edit tool's or a control's; and the controls of each side of the table.
+//! Whose contact is it: the land's, a tool's or a control's; and the controls of each side of the table.
 //!
 //! * [`Instrument::feed`] takes each contact event and says where it goes ([`Route`]). A contact keeps its owner until
 //!   it lifts, whatever it slides over; several people do different things at once.
@@ -13,12 +13,16 @@
 mod control;
 mod deed;
 mod edit;
+mod fold;
 mod history;
 mod layout;
+mod operate;
+mod owner;
 mod press;
+mod slice;
 mod speed;
 mod table;
 
-pub use control::{ControlId, ControlKind, ControlView};
-pub use deed::{Deed, EditView, Editing, Key, Route, Scene};
+pub use control::{ControlId, ControlKind, ControlView, Paper};
+pub use deed::{Deed, EditView, Editing, FoldHandle, Key, Route, Scene, SliceView};
 pub use table::{Instrument, InstrumentParams};

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::control::{ControlId, ControlKind, ControlView};
-use super::deed::{Deed, EditView, Key, Route, Scene};
-use super::edit::Edit;
-use super::history;
-use super::layout::{Placed, layout};
-use super::press::{Finger, Press};
-use super::speed;
+use super::control::{ControlId, ControlKind, Paper};
+use super::deed::{Deed, EditView, FoldHandle, Route, Scene, SliceView};
+use super::fold::Drawn;
+use super::layout::{Layout, Placed, layout};
+use super::owner::{Held, Owner};
+use super::press::Press;
+use super::slice::Section;
 use crate::gesture::command::{Action, Command, Tool};
-use crate::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Side, Source};
+use crate::gesture::contact::{ContactEvent, ContactKey, Phase, Side, Source};
 use crate::gesture::params::GestureParams;
 use crate::live::Clock;
 use crate::settings::Corner;
@@ -36,73 +36,66 @@ pub struct InstrumentParams {
     pub corner: Corner,
     /// True on unattended tables: nobody saves.
     pub unattended: bool,
+    /// The fold tool is offered.
+    pub folds: bool,
     /// Figures are shown from the start.
     pub readouts: bool,
     /// What is a palm, and what is a motion.
     pub gesture: GestureParams,
 }
 
+impl InstrumentParams {
+    fn layout(&self) -> Layout {
+        layout(self.size_mm, |kind| match kind {
+            ControlKind::Save => !self.unattended,
+            ControlKind::Tool(Tool::Fold) => self.folds,
+            _ => true,
+        })
+    }
+}
+
 /// The controls of both sides, and the owner of each contact.
 #[derive(Clone, Debug)]
 pub struct Instrument {
-    params: InstrumentParams,
-    placed: Vec<Placed>,
+    pub(super) params: InstrumentParams,
+    pub(super) placed: Vec<Placed>,
+    pub(super) papers: [Paper; 2],
     /// As `placed`.
-    glow: Vec<f64>,
-    contacts: BTreeMap<ContactKey, Held>,
+    pub(super) glow: Vec<f64>,
+    pub(super) contacts: BTreeMap<ContactKey, Held>,
     /// Who presses a control. A control has one finger: of a palm's five contacts four do nothing.
-    presses: BTreeMap<ControlId, Press>,
-    /// Tools and figures of the north and south side.
-    tools: [Tool; 2],
-    readouts: [bool; 2],
+    pub(super) presses: BTreeMap<ControlId, Press>,
+    /// What the north and the south side have: tools, figures, lines along folds, cross-sections.
+    pub(super) tools: [Tool; 2],
+    pub(super) readouts: [bool; 2],
+    pub(super) drawn: [Option<Drawn>; 2],
+    pub(super) sections: [Section; 2],
+    /// Whether each side's cross-section is there, and whether it stays as it is.
+    pub(super) cuts: [Option<bool>; 2],
+    /// When somebody of the north and the south side last did something, µs.
+    pub(super) stirred_us: [Option<u64>; 2],
     pointer: Option<DVec2>,
-    clock: Clock,
-    now_us: u64,
-    deeds: Vec<Deed>,
-}
-
-/// A contact that is down.
-#[derive(Clone, Debug)]
-struct Held {
-    at: DVec2,
-    owner: Owner,
-}
-
-#[derive(Clone, Debug)]
-enum Owner {
-    Land,
-    Control(ControlId),
-    /// `None` for palms.
-    Edit(Option<Box<Edit>>),
-    Panel,
-    Corner,
-    Wake,
-}
-
-impl Owner {
-    fn route(&self) -> Route {
-        match self {
-            Self::Land => Route::Land,
-            Self::Control(_) => Route::Control,
-            Self::Edit(_) => Route::Edit,
-            Self::Panel => Route::Panel,
-            Self::Corner => Route::Corner,
-            Self::Wake => Route::Wake,
-        }
-    }
+    pub(super) clock: Clock,
+    pub(super) now_us: u64,
+    pub(super) deeds: Vec<Deed>,
 }
 
 impl Instrument {
     /// Nothing is down; both sides push.
     pub fn new(params: InstrumentParams) -> Self {
-        let placed = layout(params.size_mm, params.unattended);
+        let Layout { placed, papers } = params.layout();
         Self {
             glow: vec![0.0; placed.len()],
             placed,
+            papers,
             contacts: BTreeMap::new(),
             presses: BTreeMap::new(),
             tools: [Tool::Push; 2],
             readouts: [params.readouts; 2],
+            drawn: [None, None],
+            sections: [Section::default(), Section::default()],
+            cuts: [None; 2],
+            stirred_us: [None; 2],
             pointer: None,
             clock: Clock::default(),
             now_us: 0,
@@ -127,8 +120,8 @@ impl Instrument {
     }
 
     /// Takes what a contact does and says whose it is. The owner is decided when it lands, and stays: panels come
-    /// first, then the staff's corner, the wakening from flight, controls, the edit tool (of the side's choice, or
-    /// because the clock stands), and the land. The show's own contacts ([`Source::File`]) are always the land's.
+    /// first, then the staff's corner, the wakening from flight, controls, sheets of cross-sections, handles of tools, the
+    /// side's tool (while the clock stands at least the edit tool), and the land. The show's own contacts ([`Source::File`]) are always the land's.
     ///
     /// What is the land's must be handed on with its ends, whatever happens here.
     pub fn feed(&mut self, event: &ContactEvent, now_us: u64, scene: &Scene<'_>) -> Route {
@@ -143,6 +136,7 @@ impl Instrument {
                 let owner = self.owner_of(contact, scene);
                 let route = owner.route();
                 let at = contact.position;
+                self.stir(&owner, at);
                 self.contacts.insert(key, Held { at, owner });
                 route
             }
@@ -151,50 +145,10 @@ impl Instrument {
                 let Some(held) = self.contacts.remove(&key) else {
                     return Route::Ignored;
                 };
-                let lifted = event.phase == Phase::Up;
                 let route = held.owner.route();
-                match held.owner {
-                    Owner::Control(id) => self.release(id, Finger::Contact(key), lifted),
-                    Owner::Edit(Some(mut edit)) if lifted => {
-                        let action = edit.lift(now_us, scene);
-                        self.command(action, edit.side, Some(key));
-                    }
-                    _ => {}
-                }
+                self.end(key, held, event.phase == Phase::Up, scene);
                 route
             }
-        }
-    }
-
-    /// A key that stands in for a control of the south side goes down or up. Repeats of a key that is down do no harm,
-    /// and let speed and history go on.
-    pub fn key(&mut self, key: Key, down: bool, now_us: u64, scene: &Scene<'_>) {
-        self.look(now_us, scene);
-        let kind = match key {
-            Key::PlayPause => ControlKind::PlayPause,
-            Key::Undo => ControlKind::Undo,
-            Key::Tool => ControlKind::Tool,
-            Key::Readouts => ControlKind::Readouts,
-            Key::Save => ControlKind::Save,
-            Key::StartOver => ControlKind::StartOver,
-            Key::Faster | Key::Slower if down => {
-                let pace = speed::stepped(self.clock.pace_yr_per_s, key == Key::Faster);
-                return self.command(Some(Action::Speed(pace)), Side::South, None);
-            }
-            Key::Back | Key::Forward if down => {
-                let years = history::stepped(&self.clock, key == Key::Forward);
-                return self.command(years.map(Action::Scrub), Side::South, None);
-            }
-            Key::Faster | Key::Slower | Key::Back | Key::Forward => return,
-        };
-        let id = ControlId(Side::South, kind);
-        if !self.placed.iter().any(|placed| placed.id == id) {
-            return;
-        }
-        if down {
-            self.presses.entry(id).or_insert(Press::new(Finger::Key, now_us));
-        } else {
-            self.release(id, Finger::Key, true);
         }
     }
 
@@ -228,16 +182,21 @@ impl Instrument {
         for side in [Side::North, Side::South] {
             self.follow_slider(ControlId(side, ControlKind::Scrub), now_us);
         }
-        let mut edits = Vec::new();
+        let mut done = Vec::new();
         for (key, held) in &mut self.contacts {
-            if let Owner::Edit(Some(edit)) = &mut held.owner
-                && let Some(action) = edit.tick(now_us, scene)
-            {
-                edits.push((action, edit.side, *key));
-            }
+            let (action, side) = match &mut held.owner {
+                Owner::Edit(edit) => (edit.tick(now_us, scene), edit.side),
+                Owner::Handle(side) => {
+                    let drawn = self.drawn[*side as usize].as_mut();
+                    (drawn.and_then(|drawn| drawn.due(now_us, false)), *side)
+                }
+                Owner::End(side) => (self.sections[*side as usize].due(now_us, false), *side),
+                _ => continue,
+            };
+            done.push((action, side, *key));
         }
-        for (action, side, key) in edits {
-            self.command(Some(action), side, Some(key));
+        for (action, side, key) in done {
+            self.command(action, side, Some(key));
         }
     }
 
@@ -246,24 +205,43 @@ impl Instrument {
         std::mem::take(&mut self.deeds)
     }
 
-    /// The controls as they are now, north side first.
-    pub fn controls(&self) -> Vec<ControlView> {
-        let shown = |placed: &&Placed| placed.id.1 != ControlKind::Scrub || self.clock.paused;
-        let each = self.placed.iter().zip(&self.glow);
-        each.filter(|(placed, _)| shown(placed))
-            .map(|(placed, &glow)| self.view(placed, glow))
-            .collect()
-    }
-
     /// What contacts of the edit tool are about, for drawing.
     pub fn edits(&self) -> Vec<EditView> {
         let owners = self.contacts.values().map(|held| &held.owner);
         owners
             .filter_map(|owner| match owner {
-                Owner::Edit(Some(edit)) => Some(edit.view(self.now_us)),
+                Owner::Edit(edit) => Some(edit.view(self.now_us)),
                 _ => None,
             })
             .collect()
+    }
+
+    /// Lines that fingers draw along folds now, table mm.
+    pub fn strokes(&self) -> Vec<Vec<DVec2>> {
+        let owners = self.contacts.values().map(|held| &held.owner);
+        owners
+            .filter_map(|owner| match owner {
+                Owner::Stroke(_, stroke) => Some(stroke.points().collect()),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Lines that have been drawn along folds, with their handles.
+    pub fn fold_handles(&self) -> impl Iterator<Item = FoldHandle<'_>> {
+        self.drawn.iter().flatten().map(Drawn::view)
+    }
+
+    /// Cross-sections on the land, where fingers have set them: ahead of the session.
+    pub fn slices(&self) -> impl Iterator<Item = SliceView> {
+        let sides = [Side::North, Side::South].into_iter();
+        sides.filter_map(|side| self.sections[side as usize].view(side, self.tool(side) == Tool::Slice))
+    }
+
+    /// Sheets of the cross-sections that are there.
+    pub fn papers(&self) -> impl Iterator<Item = Paper> {
+        let there = |paper: &Paper| self.cuts[paper.side as usize].is_some();
+        self.papers.into_iter().filter(there)
     }
 
     /// Lets go of everything without acting: the window has lost its focus, or a visit is over. Contacts of the land
@@ -271,16 +249,16 @@ impl Instrument {
     pub fn cancel_all(&mut self) {
         self.presses.clear();
         self.contacts.retain(|_, held| matches!(held.owner, Owner::Land));
+        self.sections.iter_mut().for_each(Section::let_go);
+        self.drawn.iter_mut().flatten().for_each(Drawn::release);
     }
 
     /// Tools and figures become as on a new table, and everything is let go of. The session is told of the tools.
     pub fn reset(&mut self) {
         self.cancel_all();
         for side in [Side::North, Side::South] {
-            if self.tool(side) != Tool::Push {
-                self.tools[side as usize] = Tool::Push;
-                self.command(Some(Action::Tool(Tool::Push)), side, None);
-            }
+            self.lay_down(side);
+            self.stirred_us[side as usize] = None;
             if self.readouts(side) != self.params.readouts {
                 self.toggle_readouts(side);
             }
@@ -291,143 +269,62 @@ impl Instrument {
     pub fn set_params(&mut self, params: InstrumentParams) {
         if params != self.params {
             self.cancel_all();
-            self.placed = layout(params.size_mm, params.unattended);
+            Layout {
+                placed: self.placed,
+                papers: self.papers,
+            } = params.layout();
             self.glow = vec![0.0; self.placed.len()];
             self.params = params;
-        }
-    }
-
-    fn look(&mut self, now_us: u64, scene: &Scene<'_>) {
-        self.now_us = now_us;
-        self.clock = *scene.clock;
-    }
-
-    fn owner_of(&mut self, contact: &Contact, scene: &Scene<'_>) -> Owner {
-        let (at, size_mm) = (contact.position, self.params.size_mm);
-        let inside = |(least, most): &(DVec2, DVec2)| at.cmpge(*least).all() && at.cmple(*most).all();
-        if scene.panels.iter().any(inside) {
-            return Owner::Panel;
-        }
-        if self.params.corner.holds(at, size_mm) {
-            return Owner::Corner;
-        }
-        if scene.in_flight {
-            return Owner::Wake;
-        }
-        let palm = self.is_palm(contact);
-        let paused = scene.clock.paused;
-        let there = |placed: &&Placed| placed.takes(at) && (placed.id.1 != ControlKind::Scrub || paused);
-        let nearest = self
-            .placed
-            .iter()
-            .filter(there)
-            .min_by(|a, b| a.distance(at).total_cmp(&b.distance(at)));
-        if let Some(id) = nearest.map(|placed| placed.id) {
-            if !palm {
-                let mut press = Press::new(Finger::Contact(contact.key), self.now_us);
-                press.at = at;
-                self.presses.entry(id).or_insert(press);
-            }
-            return Owner::Control(id);
-        }
-        let side = Side::of(at, size_mm);
-        if self.tool(side) == Tool::Edit || paused {
-            let edit = || {
-                Box::new(Edit::new(
-                    side,
-                    at,
-                    self.params.gesture.motion_mm,
-                    self.now_us,
-                    scene,
-                ))
-            };
-            return Owner::Edit((!palm).then(edit));
-        }
-        Owner::Land
-    }
-
-    fn shift(&mut self, contact: &Contact) -> Route {
-        let palm = self.is_palm(contact);
-        let Some(held) = self.contacts.get_mut(&contact.key) else {
-            return Route::Ignored;
-        };
-        held.at = contact.position;
-        let route = held.owner.route();
-        match &mut held.owner {
-            Owner::Edit(edit) => {
-                if palm {
-                    *edit = None;
-                } else if let Some(edit) = edit {
-                    edit.shift(contact.position);
-                }
-            }
-            Owner::Control(id) => {
-                let id = *id;
-                let holds = self
+            for side in [Side::North, Side::South] {
+                let kind = ControlKind::Tool(self.tool(side));
+                if !self
                     .placed
                     .iter()
-                    .any(|p| p.id == id && p.holds(contact.position));
-                let now_us = self.now_us;
-                let press = self.presses.get_mut(&id);
-                if let Some(press) = press.filter(|press| press.finger == Finger::Contact(contact.key)) {
-                    press.shift(contact.position, holds, now_us);
-                    if palm {
-                        self.presses.remove(&id);
-                    }
+                    .any(|placed| placed.id == ControlId(side, kind))
+                {
+                    self.lay_down(side);
                 }
             }
-            Owner::Land | Owner::Panel | Owner::Corner | Owner::Wake => {}
-        }
-        route
-    }
-
-    fn release(&mut self, id: ControlId, finger: Finger, lifted: bool) {
-        if self.presses.get(&id).is_none_or(|press| press.finger != finger) {
-            return;
-        }
-        if lifted {
-            self.follow_slider(id, u64::MAX);
-        }
-        if let Some(press) = self.presses.remove(&id)
-            && lifted
-            // Between two looks of a slow machine it may have been held long enough.
-            && (press.acts_on_lift(id.1) || press.held_long_enough(id.1, self.now_us))
-        {
-            self.act(id, finger);
         }
     }
 
-    /// A control does what it does.
-    fn act(&mut self, ControlId(side, kind): ControlId, finger: Finger) {
-        let action = match kind {
-            ControlKind::Tool => {
-                let tool = &mut self.tools[side as usize];
-                *tool = if *tool == Tool::Edit {
-                    Tool::Push
-                } else {
-                    Tool::Edit
-                };
-                Action::Tool(*tool)
-            }
-            ControlKind::Undo if self.clock.can_undo[side as usize] => Action::Undo,
-            ControlKind::PlayPause if self.clock.paused => Action::Play,
-            ControlKind::PlayPause => Action::Pause,
-            ControlKind::Speed => Action::Speed(speed::next(self.clock.pace_yr_per_s)),
-            ControlKind::StartOver => Action::StartOver,
-            ControlKind::Readouts => return self.toggle_readouts(side),
-            ControlKind::Save => return self.deeds.push(Deed::Save { side }),
-            ControlKind::Undo | ControlKind::Scrub => return,
-        };
-        self.command(Some(action), side, finger.contact());
+    /// The side's hands push again. The session is told, if that is news.
+    fn lay_down(&mut self, side: Side) {
+        if self.tool(side) != Tool::Push {
+            self.take_up(side, Tool::Push);
+            self.command(Some(Action::Tool(Tool::Push)), side, None);
+        }
     }
 
-    fn toggle_readouts(&mut self, side: Side) {
-        let on = !self.readouts(side);
-        self.readouts[side as usize] = on;
-        self.deeds.push(Deed::Readouts { side, on });
+    /// The side has another tool; what it began with the one before is left as it is.
+    pub(super) fn take_up(&mut self, side: Side, tool: Tool) {
+        self.tools[side as usize] = tool;
+        self.drawn[side as usize] = None;
+        self.sections[side as usize].let_go();
     }
 
-    fn command(&mut self, action: Option<Action>, side: Side, contact: Option<ContactKey>) {
+    pub(super) fn look(&mut self, now_us: u64, scene: &Scene<'_>) {
+        self.now_us = now_us;
+        self.clock = *scene.clock;
+        for (i, cut) in scene.cuts.iter().enumerate() {
+            self.cuts[i] = cut.as_ref().map(|cut| cut.frozen);
+            let known = cut
+                .as_ref()
+                .map(|cut| cut.ends.map(|end| scene.map.to_table(end)));
+            self.sections[i].look(known, self.cuts[i] == Some(true), now_us);
+        }
+    }
+
+    /// True while a control is there.
+    pub(super) fn is_there(&self, id: ControlId) -> bool {
+        match id.1 {
+            ControlKind::Scrub => self.clock.paused,
+            ControlKind::FreezeSlice | ControlKind::CloseSlice => self.cuts[id.0 as usize].is_some(),
+            _ => true,
+        }
+    }
+
+    pub(super) fn command(&mut self, action: Option<Action>, side: Side, contact: Option<ContactKey>) {
         self.deeds.extend(action.map(|action| {
             Deed::Command(Command {
                 action,
@@ -435,63 +332,5 @@ impl Instrument {
                 contact: contact.map(|key| key.id),
             })
         }));
-    }
-
-    /// Sends the clock after the finger on a slider, not more often than the session can follow.
-    fn follow_slider(&mut self, id: ControlId, now_us: u64) {
-        let placed = self.placed.iter().find(|placed| placed.id == id);
-        let (Some(placed), Some(press)) = (placed, self.presses.get_mut(&id)) else {
-            return;
-        };
-        if id.1 != ControlKind::Scrub || !history::exists(&self.clock) {
-            return;
-        }
-        if let Some(part) = press.follow(placed.along(press.at), now_us) {
-            let contact = press.finger.contact();
-            let years = history::years_at(&self.clock, part);
-            self.command(Some(Action::Scrub(years)), id.0, contact);
-        }
-    }
-
-    fn view(&self, placed: &Placed, glow: f64) -> ControlView {
-        let ControlId(side, kind) = placed.id;
-        let press = self.presses.get(&placed.id);
-        ControlView {
-            id: placed.id,
-            side,
-            kind,
-            centre_mm: placed.centre,
-            half_size_mm: placed.half,
-            rotation: placed.rotation(),
-            pressed: press.is_some_and(|press| press.inside),
-            progress: press.map_or(0.0, |press| press.progress(kind, self.now_us)),
-            on: match kind {
-                ControlKind::Tool => self.tool(side) == Tool::Edit,
-                ControlKind::PlayPause => !self.clock.paused,
-                ControlKind::Readouts => self.readouts(side),
-                _ => false,
-            },
-            enabled: match kind {
-                ControlKind::Undo => self.clock.can_undo[side as usize],
-                ControlKind::Scrub => history::exists(&self.clock),
-                _ => true,
-            },
-            value: match kind {
-                ControlKind::Speed => speed::place(self.clock.pace_yr_per_s),
-                // While a finger drags it, the slider is where the finger is: the land follows.
-                ControlKind::Scrub => {
-                    press.map_or_else(|| history::place(&self.clock), |p| placed.along(p.at))
-                }
-                _ => 0.0,
-            },
-            glow: if press.is_some() { 1.0 } else { glow },
-        }
-    }
-
-    fn is_palm(&self, contact: &Contact) -> bool {
-        let wide = contact
-            .size_mm
-            .is_some_and(|size| size.max_element() > self.params.gesture.palm_mm);
-        wide || contact.confidence == Some(0.0)
     }
 }

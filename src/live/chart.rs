@@ -88,6 +88,7 @@ impl Chart {
             self.draw_land(sim);
         }
         if stepped || changed {
+            self.surface.folds = sim.fold_lines(1);
             sim.rise_into(&mut self.node_rise);
             self.survey.raster().linear_into(&self.node_rise, &mut self.rise);
             self.risen += 1;
@@ -106,11 +107,14 @@ impl Chart {
             surface.lake_depth.data.clone_from(&self.surface.lake_depth.data);
             surface.drainage.data.clone_from(&self.surface.drainage.data);
             surface.rivers.clone_from(&self.surface.rivers);
+            surface.strata.clone_from(&self.surface.strata);
             surface.spacing = self.surface.spacing;
             slot.water = self.water;
         }
+        surface.folds.clone_from(&self.surface.folds);
         surface.plates = sim.plate_marks();
         surface.faults = sim.fault_traces();
+        slot.frame.cuts = [Side::North, Side::South].map(|side| sim.cut(side).cloned());
         slot.frame.clock = clock(sim);
         slot.frame.surface.elapsed_yr = slot.frame.clock.elapsed_yr;
         slot.frame.land = self.land;
@@ -135,6 +139,7 @@ impl Chart {
             },
             &mut self.surface,
         );
+        self.survey.draw_layers(&sim.underground(), &mut self.surface);
         self.surface.spacing = world.tin.spacing();
         self.water += 1;
         self.revision = Some(sim.land_revision());

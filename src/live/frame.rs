@@ -2,7 +2,7 @@
 
 use crate::gesture::hand::{ContactStats, HandView};
 use crate::sim::{Quarantine, SessionCounts};
-use crate::surface::Surface;
+use crate::surface::{Cut, Surface};
 
 /// Everything that can be seen of the session at one moment. Plain data; frames circulate and are filled anew.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct Frame {
     pub surface: Surface,
     /// The hands that are down.
     pub hands: Vec<HandView>,
+    /// Cross-sections of the north and south side.
+    pub cuts: [Option<Cut>; 2],
     /// Time, and what moves.
     pub clock: Clock,
     /// What became of the contacts since the session began.
@@ -37,6 +39,7 @@ impl Frame {
             land: 0,
             surface,
             hands: Vec::new(),
+            cuts: [None, None],
             clock: Clock::default(),
             contacts: ContactStats::default(),
             counts: SessionCounts::default(),

@@ -32,6 +32,7 @@ pub use ring::{RING_BYTES, RING_US, Ring};
 
 use crate::gesture::command::Command;
 use crate::gesture::contact::ContactEvent;
+use crate::rock::Stratigraphy;
 use crate::sim::{Checkpoint, SimParams, World};
 use crate::units::PlanMap;
 use chart::{Chart, Slot};
@@ -47,6 +48,8 @@ pub struct LiveParams {
     pub nodes: usize,
     /// Seed of the first land.
     pub seed: u64,
+    /// The rock under every fresh land.
+    pub layers: Arc<Stratigraphy>,
     /// Parameters of the session itself.
     pub sim: SimParams,
     /// Columns of the rasters in a frame; cells are square.

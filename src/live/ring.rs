@@ -31,6 +31,10 @@ pub struct Ring {
     /// How the clock was then, where it was not as a new session has it.
     speed: Option<f64>,
     paused: bool,
+    /// What laid the rock that was under the land then.
+    layers: Option<Action>,
+    /// What made the cross-sections that were there then.
+    cuts: Vec<Command>,
 }
 
 impl Ring {
@@ -45,6 +49,8 @@ impl Ring {
             before: Admission::default(),
             speed,
             paused: false,
+            layers: None,
+            cuts: Vec::new(),
         }
     }
 
@@ -116,7 +122,13 @@ impl Ring {
         InputFrame {
             t_us: 0,
             events: self.before.live().map(down).collect(),
-            commands: speed.into_iter().chain(paused).map(Command::new).collect(),
+            commands: speed
+                .into_iter()
+                .chain(paused)
+                .chain(self.layers.clone())
+                .map(Command::new)
+                .chain(self.cuts.iter().cloned())
+                .collect(),
         }
     }
 
@@ -127,8 +139,21 @@ impl Ring {
         self.begins_us = frame.t_us / TICK_US * TICK_US;
         self.before.admit(&frame.events);
         for command in &frame.commands {
-            match command.action {
-                Action::Speed(speed) => self.speed = Some(speed),
+            match &command.action {
+                Action::Speed(speed) => self.speed = Some(*speed),
+                Action::Layers(_) | Action::Pile(_) => self.layers = Some(command.action.clone()),
+                Action::Slice(_) | Action::FreezeSlice(_) => {
+                    // The last of each kind and side counts; notes stay behind the ends they belong to.
+                    let same = |kept: &&mut Command| {
+                        kept.side == command.side && kept.action.word() == command.action.word()
+                    };
+                    match self.cuts.iter_mut().find(same) {
+                        Some(kept) => kept.clone_from(command),
+                        None => self.cuts.push(command.clone()),
+                    }
+                }
+                Action::LabelSlice { .. } => self.cuts.push(command.clone()),
+                Action::CloseSlice => self.cuts.retain(|kept| kept.side != command.side),
                 Action::Play => self.paused = false,
                 Action::Pause | Action::Scrub(_) => self.paused = true,
                 _ => {}

@@ -23,6 +23,7 @@ impl Table {
             map: PlanMap::new(DVec2::new(1200.0, 700.0), DEFAULT_SHORT_SIDE),
             nodes: 400,
             seed: 3,
+            layers: crate::rock::preset::default(),
             sim,
             raster_width: 24,
             threads: 1,

@@ -12,9 +12,10 @@ use super::exchange::Writer;
 use super::ring::Ring;
 use super::timeline::Timeline;
 use super::{LiveParams, Start, Vitals};
-use crate::gesture::command::{self, Command};
-use crate::gesture::contact::ContactEvent;
+use crate::gesture::command::{self, Action, Command};
+use crate::gesture::contact::{ContactEvent, InputFrame};
 use crate::gesture::file::Header;
+use crate::rock::preset;
 use crate::sim::{Checkpoint, Sim, SimParams, TICK_US, World};
 use crate::terrain::TinError;
 use crate::units::MYR;
@@ -253,7 +254,8 @@ impl Worker {
 
 /// The land of `seed` on a table as `params` has it.
 pub(super) fn new_world(params: &LiveParams, seed: u64) -> Result<World, TinError> {
-    World::new(params.map, params.nodes, seed)
+    let world = World::new(params.map, params.nodes, seed)?;
+    Ok(world.with_layers(Arc::clone(&params.layers)))
 }
 
 /// A ring for a session that begins with `world`.
@@ -265,7 +267,16 @@ fn new_ring(world: &World, params: &SimParams) -> Ring {
         ..Header::new(world.map.size_mm())
     };
     let usual = params.pace_yr_per_s == SimParams::default().pace_yr_per_s;
-    Ring::new(header, (!usual).then_some(params.pace_yr_per_s / MYR))
+    let mut ring = Ring::new(header, (!usual).then_some(params.pace_yr_per_s / MYR));
+    if *world.stratigraphy != *preset::default() {
+        // A replay lays it first.
+        ring.record(&InputFrame {
+            t_us: 0,
+            events: Vec::new(),
+            commands: vec![Command::new(Action::Pile(Arc::clone(&world.stratigraphy)))],
+        });
+    }
+    ring
 }
 
 /// The command as a gesture file gives it back; none where a file could not hold it.

@@ -72,7 +72,7 @@ impl Grid {
 
     /// Where `p` lies between cell centres: column and row of the cell to the north-west, and the fractions towards
     /// the next ones, clamped to the grid.
-    fn bilinear(&self, p: DVec2) -> (usize, usize, f64, f64) {
+    pub(super) fn bilinear(&self, p: DVec2) -> (usize, usize, f64, f64) {
         let at = (p - self.north_west) / self.cell - DVec2::new(0.5, -0.5);
         let split = |v: f64, n: usize| {
             let last = n.saturating_sub(2) as f64;

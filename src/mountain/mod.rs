@@ -1,19 +1,21 @@
 //! Plates, transport, compression, fault and uplift of the flat world, after Cordonnier et al. 2018
-//! ("Sculpting Mountains", TVCG 24(5)), sections 4 and 6.2.
+//! ("Sculpting Mountains", TVCG 24(5)), sections 4, 5 and 6.2.
 //!
 //! The way of the data: a [`PlateSet`] turns what hands do into plates; [`Tectonics::compute`] carries the crust
 //! with them ([`transport`], Eq. 1–2), reads the shortening ([`compression`]), finds where ranges and rifts stand
 //! ([`belt`]), and gives the rate at which the ground rises ([`uplift`]) with the traces of its faults ([`fault`]).
-//! [`strata`] sums the rates up for rock layers.
+//! [`strata`] sums the rates up for rock layers. [`fold`] wrinkles layers under compression.
 //!
 //! Everything is in the plan frame: metres, x east, y north, model time in years. Fields are row by row from the
 //! north. Nothing here knows the globe, a window or a graphics card, reads a clock, or draws random numbers.
 
 pub mod belt;
 pub mod body;
+mod buckling;
 pub mod compression;
 pub mod edit;
 pub mod fault;
+pub mod fold;
 pub mod grid;
 pub mod hull;
 pub mod params;

@@ -41,8 +41,8 @@ pub struct MountainParams {
     /// Uplift is softly capped here. Default 1.3e-3 m/yr. Range 1e-4–1e-2: real belts rarely exceed a few mm/yr, and
     /// summits grow with it.
     pub rise_limit: f64,
-    /// Subsidence of a rift is softly capped here (a positive rate). Default 0.2e-3 m/yr: in the 5 My of a push that
-    /// is the depth of a great rift lake. Range 0–5e-3; 0 switches rifts off.
+    /// Subsidence of a rift is softly capped here (a positive rate). Default 0.4e-3 m/yr: in the 5 My of a push that
+    /// is the depth of a great rift lake and the sediment under it. Range 0–5e-3; 0 switches rifts off.
     pub sink_limit: f64,
     /// Greatest width of a rift. Default 24 km. Range 5–100 km: real rifts are some 20–60 km wide however far apart
     /// the plates that part (Kenya, Rhine, Baikal); wider ones become inland seas.
@@ -98,7 +98,7 @@ impl Default for MountainParams {
             rule: UpliftRule::Belts,
             rise_per_thickening: 2.6e-3,
             rise_limit: 1.3e-3,
-            sink_limit: 0.2e-3,
+            sink_limit: 0.4e-3,
             rift_reach: [20.0 * KM, 60.0 * KM],
             rift_width: 24.0 * KM,
             paper_mean: 5e-4,

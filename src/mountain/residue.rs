@@ -7,8 +7,10 @@
 
 use std::sync::Arc;
 
+use super::fold::FoldDrive;
 use super::grid::Field;
 use super::plate::PlateId;
+use super::tectonics::TectonicField;
 
 /// Most residues that are kept; the ones that end first go first.
 pub const MAX_RESIDUES: usize = 24;
@@ -20,6 +22,8 @@ pub struct Residue {
     pub plate: PlateId,
     /// Its share of the uplift, m/yr, on the grid of blocks.
     pub uplift: Arc<Field>,
+    /// The same share of what makes layers fold.
+    pub folding: Arc<FoldDrive>,
     /// When the push is spent, years.
     pub expires_yr: f64,
 }
@@ -27,8 +31,8 @@ pub struct Residue {
 impl Residue {
     /// The share of a push in the uplift `with` it: what is gone in the uplift `without`. Only what raised (or sank) the
     /// ground counts, not that other belts move up when one leaves.
-    pub fn new(plate: PlateId, with: &Field, without: &Field, expires_yr: f64) -> Self {
-        let share = |(&with, &without): (&f32, &f32)| {
+    pub fn new(plate: PlateId, with: &TectonicField, without: &TectonicField, expires_yr: f64) -> Self {
+        let share = |with: f32, without: f32| {
             let part = with - without;
             if with > 0.0 {
                 part.clamp(0.0, with)
@@ -36,31 +40,45 @@ impl Residue {
                 part.clamp(with, 0.0)
             }
         };
-        let data = with.data.iter().zip(&without.data).map(share).collect();
+        let mut folding = with.folding.clone();
+        let mut uplift = with.uplift.clone();
+        for (at, (rate, without)) in uplift.data.iter_mut().zip(&without.uplift.data).enumerate() {
+            let share = share(*rate, *without);
+            let part = if *rate > 0.0 { share / *rate } else { 0.0 };
+            folding.cos2.data[at] *= part;
+            folding.sin2.data[at] *= part;
+            *rate = share;
+        }
         Self {
             plate,
-            uplift: Arc::new(Field {
-                grid: with.grid,
-                data,
-            }),
+            uplift: Arc::new(uplift),
+            folding: Arc::new(folding),
             expires_yr,
         }
     }
 }
 
 /// Joins residues to an uplift, as belts that share a place join: in the fourth-power mean, ranges and rifts apart, so
-/// that the stronger covers the weaker and the same push twice is a little more than once.
-pub(super) fn join<'a>(uplift: &mut Field, residues: impl Iterator<Item = &'a Residue>) {
-    let residues: Vec<&Field> = residues
-        .map(|residue| &*residue.uplift)
-        .filter(|field| field.grid == uplift.grid)
+/// that the stronger covers the weaker and the same push twice is a little more than once. Folds grow as fast as the
+/// same mean of theirs, across the mean direction.
+pub(super) fn join<'a>(
+    uplift: &mut Field,
+    folding: &mut FoldDrive,
+    residues: impl Iterator<Item = &'a Residue>,
+) {
+    let residues: Vec<&Residue> = residues
+        .filter(|residue| residue.uplift.grid == uplift.grid)
         .collect();
     if residues.is_empty() {
         return;
     }
     for (at, rate) in uplift.data.iter_mut().enumerate() {
         let (mut up, mut down) = (0.0_f64, 0.0_f64);
-        for part in residues.iter().map(|field| field.data[at]).chain([*rate]) {
+        for part in residues
+            .iter()
+            .map(|residue| residue.uplift.data[at])
+            .chain([*rate])
+        {
             let fourth = f64::from(part).powi(4);
             if part > 0.0 {
                 up += fourth;
@@ -69,53 +87,69 @@ pub(super) fn join<'a>(uplift: &mut Field, residues: impl Iterator<Item = &'a Re
             }
         }
         *rate = (up.sqrt().sqrt() - down.sqrt().sqrt()) as f32;
+
+        let (mut x, mut y) = (folding.cos2.data[at], folding.sin2.data[at]);
+        let mut fourth = f64::from(x.hypot(y)).powi(4);
+        for part in residues.iter().map(|residue| &residue.folding) {
+            let (east, north) = (part.cos2.data[at], part.sin2.data[at]);
+            x += east;
+            y += north;
+            fourth += f64::from(east.hypot(north)).powi(4);
+            folding.limit.data[at] = folding.limit.data[at].max(part.limit.data[at]);
+        }
+        let scale = fourth.sqrt().sqrt() as f32 / x.hypot(y).max(f32::MIN_POSITIVE);
+        folding.cos2.data[at] = x * scale;
+        folding.sin2.data[at] = y * scale;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::grid::Grid;
+    use super::super::params::MountainParams;
     use super::*;
     use crate::units::Extent;
 
-    fn field(value: f32) -> Field {
-        Field::constant(
-            Grid::over(
-                Extent {
-                    width: 64e3,
-                    height: 64e3,
-                },
-                64 * 64,
-            ),
-            value,
-        )
+    fn field(value: f32) -> TectonicField {
+        let land = Extent {
+            width: 64e3,
+            height: 64e3,
+        };
+        let params = MountainParams {
+            cells: 64 * 64,
+            ..MountainParams::default()
+        };
+        let mut field = TectonicField::still(land, &params);
+        field.uplift.data.fill(value);
+        field.folding.cos2.data.fill(value / 2.0);
+        field
     }
 
     #[test]
     fn a_share_is_what_the_push_itself_did() {
         let share = |with, without| {
-            Residue::new(PlateId(0), &field(with), &field(without), 1.0)
-                .uplift
-                .data[0]
+            let residue = Residue::new(PlateId(0), &field(with), &field(without), 1.0);
+            (residue.uplift.data[0], residue.folding.cos2.data[0])
         };
-        assert_eq!(share(3e-4, 1e-4), 3e-4 - 1e-4);
-        assert_eq!(share(3e-4, 5e-4), 0.0);
-        assert_eq!(share(-2e-4, 0.0), -2e-4);
-        assert_eq!(share(-2e-4, 1e-4), -2e-4);
+        assert_eq!(share(3e-4, 0.0), (3e-4, 1.5e-4));
+        assert_eq!(share(3e-4, 5e-4), (0.0, 0.0));
+        assert_eq!(share(-2e-4, 0.0).0, -2e-4);
+        assert_eq!(share(-2e-4, 1e-4).0, -2e-4);
     }
 
     #[test]
     fn the_same_push_twice_is_a_little_more_than_once() {
         let residue = Residue::new(PlateId(0), &field(8e-4), &field(0.0), 1.0);
-        let mut uplift = field(8e-4);
-        join(&mut uplift, [&residue].into_iter());
-        let ratio = uplift.data[0] / 8e-4;
-        assert!((ratio - 2f32.powf(0.25)).abs() < 1e-5, "{ratio}");
-        let mut nothing_new = field(0.0);
-        join(&mut nothing_new, [&residue].into_iter());
-        assert!((nothing_new.data[0] - 8e-4).abs() < 1e-9);
-        let mut alone = field(5e-4);
-        join(&mut alone, std::iter::empty());
-        assert_eq!(alone, field(5e-4));
+        let joined = |value: f32, residues: &[&Residue]| {
+            let mut field = field(value);
+            join(&mut field.uplift, &mut field.folding, residues.iter().copied());
+            (field.uplift.data[0], field.folding.cos2.data[0])
+        };
+        let twice = joined(8e-4, &[&residue]);
+        for (rate, once) in [(twice.0, 8e-4), (twice.1, 4e-4)] {
+            assert!((rate / once - 2f32.powf(0.25)).abs() < 1e-5, "{rate}");
+        }
+        let nothing_new = joined(0.0, &[&residue]);
+        assert!((nothing_new.0 - 8e-4).abs() < 1e-9 && (nothing_new.1 - 4e-4).abs() < 1e-9);
+        assert_eq!(joined(5e-4, &[]), (5e-4, 2.5e-4));
     }
 }

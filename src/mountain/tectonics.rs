@@ -3,8 +3,10 @@
 use glam::DVec2;
 
 use super::belt::{Kind, belts};
+use super::buckling;
 use super::compression::CompressionField;
 use super::fault::{FaultTrace, trace};
+use super::fold::FoldDrive;
 use super::grid::{Field, Grid};
 use super::params::MountainParams;
 use super::plate::{Pair, PlateSet};
@@ -44,6 +46,8 @@ pub struct TectonicField {
     pub compression: CompressionField,
     /// Uplift rate in m/yr on the grid of blocks of the transport's cells.
     pub uplift: Field,
+    /// What makes the layers fold, on the same grid.
+    pub folding: FoldDrive,
     /// Traces of the main faults.
     pub faults: Vec<FaultTrace>,
     /// Figures.
@@ -58,6 +62,7 @@ impl TectonicField {
             transport: TransportField::new(grid),
             compression: CompressionField::none(grid),
             uplift: Field::constant(grid.blocks(), 0.0),
+            folding: FoldDrive::still(grid.blocks()),
             faults: Vec::new(),
             report: TectonicReport::default(),
         }
@@ -84,6 +89,7 @@ impl TectonicField {
 pub struct Tectonics<S = CpuTransport> {
     stage: S,
     uplift: Option<(Grid, UpliftStage)>,
+    sorted: Vec<f32>,
 }
 
 impl Default for Tectonics {
@@ -95,7 +101,11 @@ impl Default for Tectonics {
 impl<S: TransportStage> Tectonics<S> {
     /// Uses another implementation of the transport.
     pub fn with_stage(stage: S) -> Self {
-        Self { stage, uplift: None }
+        Self {
+            stage,
+            uplift: None,
+            sorted: Vec::new(),
+        }
     }
 
     /// The field of the plates at `now_yr` over `extent`.
@@ -181,8 +191,16 @@ impl<S: TransportStage> Tectonics<S> {
                 );
             }
         }
+        buckling::fill(
+            &out.compression,
+            &out.uplift,
+            params,
+            &mut self.sorted,
+            &mut out.folding,
+        );
         residue::join(
             &mut out.uplift,
+            &mut out.folding,
             plates.residues().iter().filter(|r| now_yr < r.expires_yr),
         );
         out.report = report(out);

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::rock::Colour;
+
 /// Linear light of an sRGB colour given as `0xRRGGBB` (IEC 61966-2-1).
 pub(crate) fn linear(hex: u32) -> Vec3 {
     let channel = |shift: u32| {
@@ -13,6 +15,11 @@ pub(crate) fn linear(hex: u32) -> Vec3 {
         }
     };
     Vec3::new(channel(16), channel(8), channel(0))
+}
+
+/// Linear light of an sRGB colour.
+pub(super) fn light([red, green, blue]: Colour) -> Vec3 {
+    linear(u32::from(red) << 16 | u32::from(green) << 8 | u32::from(blue))
 }
 
 /// Linear light → sRGB bytes by table.

@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::colour::{Ramp, linear, smoothstep};
 use super::light::Spot;
 use super::noise;
+use super::strata::Stone;
 
 /// Height of the upper edge of the forest, metres: that of the Southern Alps of New Zealand, a young range between two
 /// plates as those of the table are (Wardle 2008, "New Zealand forest to alpine
@@ -14,6 +15,12 @@ pub(crate) const TREE_LINE: f32 = 1300.0;
 /// Height above which snow lies all year, metres: there it is 1,600 m in the wet west and 2,200 m in the dry east
 /// (Chinn 1995, "Glacier fluctuations in the Southern Alps of New Zealand", Arctic and Alpine Research 27).
 pub(crate) const SNOW_LINE: f32 = 2050.0;
+
+/// Slopes (tangents) over which plants give way to the rock of a cliff: 28° to 37°.
+const CLIFF: (f32, f32) = (0.53, 0.75);
+
+/// Most that a cliff shows of its rock; the rest is ledges and what grows on them.
+const CLIFF_SHOWS: f32 = 0.88;
 
 /// The colours of the map, in linear light. Greens are never loud, rock is warm, shadows come from the light.
 pub(crate) struct Palette {
@@ -72,7 +79,16 @@ impl Palette {
 
     /// Colour of the dry land at a place (east, north, metres) and height (metres). `broad` is [`broad_noise`] there,
     /// `floodplain` is 1 beside large rivers.
-    pub(super) fn land(&self, at: (f32, f32), height: f32, broad: f32, floodplain: f32, spot: &Spot) -> Vec3 {
+    /// `stone` is the rock under it, where it is known.
+    pub(super) fn land(
+        &self,
+        at: (f32, f32),
+        height: f32,
+        broad: f32,
+        floodplain: f32,
+        spot: &Spot,
+        stone: Option<Stone>,
+    ) -> Vec3 {
         let (east, north) = at;
         let fine = noise::fractal(east / 1100.0, north / 1100.0, 3, 23);
         let border = 0.6 * broad + 0.4 * fine;
@@ -121,7 +137,15 @@ impl Palette {
         let barren = smoothstep(SNOW_LINE - 600.0, SNOW_LINE - 50.0, height + 260.0 * border);
         let bare = bare.max(0.8 * barren);
         let grain = 1.0 + 0.07 * fine;
-        colour = colour.lerp(self.rock.at(height) * grain, bare * (0.55 + 0.45 * alpine));
+        let mut rock = self.rock.at(height);
+        let mut shows = bare * (0.55 + 0.45 * alpine);
+        if let Some(stone) = stone {
+            // Cliffs show their beds; gentler ground has only a tinge of its rock, or beds would look like contours.
+            let cliff = smoothstep(CLIFF.0, CLIFF.1, slope + 0.06 * fine);
+            rock = rock.lerp(stone.layer, 0.7).lerp(stone.bedded, cliff);
+            shows = shows.max(CLIFF_SHOWS * cliff);
+        }
+        colour = colour.lerp(rock * grain, shows);
 
         // Snow: high, in the shade lower, in hollows lower, not on faces it slides from.
         let snow_line = SNOW_LINE - 330.0 * spot.northness + 170.0 * border + 90.0 * spot.convexity;

@@ -3,12 +3,15 @@
 //! Two inks that stay apart for every kind of colour vision (Okabe & Ito 2008): vermilion for what moves, blue-black
 //! for what stands. Each line lies on a pale halo, so that it reads on dark slopes and on snow.
 
+use ab_glyph::FontRef;
 use glam::DVec2;
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
 };
 
 use super::MapFrame;
+use super::lettering::{self, Letters};
+use crate::slice::colour::INK;
 use crate::surface::{FaultTrace, PlateMark, PlateState, Surface};
 
 const VERMILION: [u8; 3] = [176, 62, 22];
@@ -17,12 +20,38 @@ const PAPER: [u8; 3] = [250, 246, 236];
 
 /// Draws on the land's own pixels.
 pub(super) fn draw_marks(pixmap: &mut Pixmap, surface: &Surface, frame: MapFrame) {
+    draw_faults(pixmap, surface, frame);
+    let mut pen = Pen { pixmap, frame };
+    for plate in &surface.plates {
+        pen.plate(plate);
+    }
+}
+
+/// Draws faults alone.
+pub(super) fn draw_faults(pixmap: &mut Pixmap, surface: &Surface, frame: MapFrame) {
     let mut pen = Pen { pixmap, frame };
     for fault in &surface.faults {
         pen.fault(fault);
     }
-    for plate in &surface.plates {
-        pen.plate(plate);
+}
+
+/// Draws a piece of fault on a sheet as the map of `frame` has them, from `from` to the right.
+pub(super) fn draw_fault_sample(sheet: &mut Pixmap, from: DVec2, length: f64, frame: MapFrame) {
+    let mut pen = Pen { pixmap: sheet, frame };
+    pen.toothed(&[from, from + DVec2::new(length, 0.0)], true);
+}
+
+/// Draws the lines of slices, each with its letter at both ends.
+pub(super) fn draw_cuts(pixmap: &mut Pixmap, cuts: &[[DVec2; 2]], frame: MapFrame) {
+    let font = lettering::font();
+    for (cut, letter) in cuts.iter().zip('A'..='Z') {
+        let mut pen = Pen { pixmap, frame };
+        let ends = cut.map(|end| pen.to_map(end));
+        pen.cut(ends);
+        if let Some(font) = &font {
+            pen.end(font, ends[0], &letter.to_string());
+            pen.end(font, ends[1], &format!("{letter}'"));
+        }
     }
 }
 
@@ -101,15 +130,51 @@ impl Pen<'_> {
         }
     }
 
+    /// The dashed line of a slice.
+    fn cut(&mut self, ends: [DVec2; 2]) {
+        if let Some(line) = polyline(&ends, false) {
+            let scale = self.frame.scale();
+            let dash = StrokeDash::new(vec![12.0 * scale, 5.0 * scale], 0.0);
+            self.stroke(&line, INK, 0.95, 1.5, dash);
+        }
+    }
+
+    /// A letter on a disc of paper, moved inside where it would hang over the edge.
+    fn end(&mut self, font: &FontRef<'_>, at: DVec2, name: &str) {
+        let scale = self.frame.scale();
+        let radius = 14.0 * f64::from(scale);
+        let room = DVec2::new(f64::from(self.frame.width), f64::from(self.frame.height)) - radius;
+        let at = at.max(DVec2::splat(radius)).min(room.max(DVec2::splat(radius)));
+        let mut disc = PathBuilder::new();
+        disc.push_circle(at.x as f32, at.y as f32, radius as f32);
+        if let Some(disc) = disc.finish() {
+            self.fill(&disc, PAPER, 0.92);
+            self.stroke(&disc, INK, 0.8, 0.9, None);
+        }
+        let letters = Letters {
+            font,
+            size: 20.0 * scale,
+            colour: INK,
+            strength: 1.0,
+        };
+        let left = at.x as f32 - 0.5 * letters.width(name);
+        letters.write(self.pixmap, name, left, at.y as f32 + 6.5 * scale);
+    }
+
     /// The trace with triangular teeth on the side of the hanging wall.
     fn fault(&mut self, fault: &FaultTrace) {
         let line: Vec<DVec2> = fault.points.iter().map(|&p| self.to_map(p)).collect();
-        let Some(trace) = polyline(&line, false) else {
+        self.toothed(&line, fault.range_on_left);
+    }
+
+    /// A line with teeth on one side.
+    fn toothed(&mut self, line: &[DVec2], on_left: bool) {
+        let Some(trace) = polyline(line, false) else {
             return;
         };
         self.stroke(&trace, BLUE_BLACK, 0.80, 1.5, None);
         // Seen along the line, left is to the north of a line to the east: up, −y in pixels.
-        let side = if fault.range_on_left { -1.0 } else { 1.0 };
+        let side = if on_left { -1.0 } else { 1.0 };
         let scale = f64::from(self.frame.scale());
         let (every, base, tall) = (26.0 * scale, 9.0 * scale, 7.5 * scale);
         let mut teeth = PathBuilder::new();

@@ -4,11 +4,26 @@ use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _, point};
 use tiny_skia::{Color, IntRect, Paint, Pixmap, PixmapPaint, Rect, Transform};
 
 use super::{MapFrame, MapStyle};
+use crate::rock::Colour;
+use crate::slice::colour::{INK, PAPER};
 use crate::surface::Surface;
 use crate::units::{KM, MYR};
 
-const PAPER: [u8; 3] = [247, 243, 234];
-const INK: [u8; 3] = [52, 50, 47];
+/// The program's own font; `None` where it does not parse, as a picture without letters is still a picture.
+pub(super) fn font() -> Option<FontRef<'static>> {
+    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok()
+}
+
+/// Letters of one size and colour.
+#[derive(Clone, Copy)]
+pub(super) struct Letters<'a> {
+    pub(super) font: &'a FontRef<'a>,
+    /// Size, pixels.
+    pub(super) size: f32,
+    pub(super) colour: Colour,
+    /// Opacity, 0–1.
+    pub(super) strength: f32,
+}
 
 /// The whole picture: the land in its place on the paper, lettered where the style has lettering.
 pub(super) fn sheet(
@@ -32,8 +47,7 @@ pub(super) fn sheet(
     );
     if style.lettering {
         neat_line(&mut sheet, frame);
-        // The font is part of the program; should it not parse, a map without letters is still a map.
-        if let Ok(font) = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT) {
+        if let Some(font) = font() {
             letter(&mut sheet, &font, surface, style, frame);
         }
     }
@@ -79,13 +93,13 @@ fn letter(sheet: &mut Pixmap, font: &FontRef<'_>, surface: &Surface, style: &Map
             .flat_map(char::to_uppercase)
             .chain(letters)
             .collect();
-        pen = write(sheet, font, &title, 25.0 * scale, pen, baseline, 0.95) + 20.0 * scale;
+        pen = Letters::ink(font, 25.0 * scale, 0.95).write(sheet, &title, pen, baseline) + 20.0 * scale;
     }
     let scale_left = scale_bar(sheet, font, frame, right, baseline);
     let facts = facts(surface, style);
-    let size = 17.0 * scale;
-    if pen + text_width(font, &facts, size) + 20.0 * scale < scale_left {
-        write(sheet, font, &facts, size, pen, baseline, 0.75);
+    let letters = Letters::ink(font, 17.0 * scale, 0.75);
+    if pen + letters.width(&facts) + 20.0 * scale < scale_left {
+        letters.write(sheet, &facts, pen, baseline);
     }
 }
 
@@ -114,10 +128,10 @@ fn scale_bar(sheet: &mut Pixmap, font: &FontRef<'_>, frame: MapFrame, right: f32
     let km = round_below(f64::from(frame.width) / 7.0 / pixels_per_km);
     let length = (km * pixels_per_km) as f32;
     let label = format!("{km} km");
-    let size = 15.0 * scale;
-    let label_left = right - text_width(font, &label, size);
-    write(sheet, font, &label, size, label_left, baseline, 0.85);
-    let zero_width = text_width(font, "0", size);
+    let letters = Letters::ink(font, 15.0 * scale, 0.85);
+    let label_left = right - letters.width(&label);
+    letters.write(sheet, &label, label_left, baseline);
+    let zero_width = letters.width("0");
     let start = label_left - 9.0 * scale - length;
     let thick = 3.2 * scale;
     let top = baseline - 5.2 * scale - 0.5 * thick;
@@ -128,7 +142,7 @@ fn scale_bar(sheet: &mut Pixmap, font: &FontRef<'_>, frame: MapFrame, right: f32
         }
     }
     let zero_left = start - 9.0 * scale - zero_width;
-    write(sheet, font, "0", size, zero_left, baseline, 0.85);
+    letters.write(sheet, "0", zero_left, baseline);
     zero_left
 }
 
@@ -146,49 +160,55 @@ pub(crate) fn round_below(value: f64) -> f64 {
         }
 }
 
-fn text_width(font: &FontRef<'_>, text: &str, size: f32) -> f32 {
-    let scaled = font.as_scaled(PxScale::from(size));
-    text.chars().map(|c| scaled.h_advance(scaled.glyph_id(c))).sum()
-}
-
-/// Writes `text` in ink from `left` on the baseline; returns where it ends.
-fn write(
-    sheet: &mut Pixmap,
-    font: &FontRef<'_>,
-    text: &str,
-    size: f32,
-    left: f32,
-    baseline: f32,
-    strength: f32,
-) -> f32 {
-    let scaled = font.as_scaled(PxScale::from(size));
-    let (width, height) = (sheet.width() as i32, sheet.height() as i32);
-    let mut pen = left;
-    for c in text.chars() {
-        let id = scaled.glyph_id(c);
-        let glyph = id.with_scale_and_position(PxScale::from(size), point(pen, baseline));
-        pen += scaled.h_advance(id);
-        let Some(outline) = font.outline_glyph(glyph) else {
-            continue;
-        };
-        let origin = outline.px_bounds().min;
-        outline.draw(|dx, dy, coverage| {
-            let (x, y) = (origin.x as i32 + dx as i32, origin.y as i32 + dy as i32);
-            if (0..width).contains(&x) && (0..height).contains(&y) {
-                let pixel = &mut sheet.pixels_mut()[(y * width + x) as usize];
-                let part = coverage.min(1.0) * strength;
-                let blend = |paper: u8, ink: u8| {
-                    (f32::from(paper) + (f32::from(ink) - f32::from(paper)) * part).round() as u8
-                };
-                *pixel = super::opaque([
-                    blend(pixel.red(), INK[0]),
-                    blend(pixel.green(), INK[1]),
-                    blend(pixel.blue(), INK[2]),
-                ]);
-            }
-        });
+impl Letters<'_> {
+    /// Ink of a strength.
+    fn ink<'a>(font: &'a FontRef<'a>, size: f32, strength: f32) -> Letters<'a> {
+        Letters {
+            font,
+            size,
+            colour: INK,
+            strength,
+        }
     }
-    pen
+
+    /// How wide a text is, pixels.
+    pub(super) fn width(&self, text: &str) -> f32 {
+        let scaled = self.font.as_scaled(PxScale::from(self.size));
+        text.chars().map(|c| scaled.h_advance(scaled.glyph_id(c))).sum()
+    }
+
+    /// Writes `text` from `left` on the baseline; returns where it ends.
+    pub(super) fn write(&self, sheet: &mut Pixmap, text: &str, left: f32, baseline: f32) -> f32 {
+        let scale = PxScale::from(self.size);
+        let scaled = self.font.as_scaled(scale);
+        let (width, height) = (sheet.width() as i32, sheet.height() as i32);
+        let mut pen = left;
+        for c in text.chars() {
+            let id = scaled.glyph_id(c);
+            let glyph = id.with_scale_and_position(scale, point(pen, baseline));
+            pen += scaled.h_advance(id);
+            let Some(outline) = self.font.outline_glyph(glyph) else {
+                continue;
+            };
+            let origin = outline.px_bounds().min;
+            outline.draw(|dx, dy, coverage| {
+                let (x, y) = (origin.x as i32 + dx as i32, origin.y as i32 + dy as i32);
+                if (0..width).contains(&x) && (0..height).contains(&y) {
+                    let pixel = &mut sheet.pixels_mut()[(y * width + x) as usize];
+                    let part = coverage.min(1.0) * self.strength;
+                    let blend = |paper: u8, ink: u8| {
+                        (f32::from(paper) + (f32::from(ink) - f32::from(paper)) * part).round() as u8
+                    };
+                    *pixel = super::opaque([
+                        blend(pixel.red(), self.colour[0]),
+                        blend(pixel.green(), self.colour[1]),
+                        blend(pixel.blue(), self.colour[2]),
+                    ]);
+                }
+            });
+        }
+        pen
+    }
 }
 
 #[cfg(test)]

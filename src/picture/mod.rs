@@ -1,23 +1,29 @@
 //! From the surface to pictures.
 //!
 //! [`relief_map`] draws the land as an atlas would print it, in the manner of the Swiss school (Imhof 1965): light
-//! from the north-west, cool shadows, quiet greens, contrast that grows towards the summits. Everything is computed
-//! on the CPU, row by row and in parallel, and does not depend on the number of threads.
+//! from the north-west, cool shadows, quiet greens, contrast that grows towards the summits. [`geological_map`] shows the
+//! rock at the surface instead, with a key, and [`paint_figure`] a slice. Everything is computed on the CPU, row by row
+//! and in parallel, and does not depend on the number of threads.
 
 pub(crate) mod colour;
 pub(crate) mod cover;
 mod field;
+mod figure;
 mod frame;
+mod geology;
 mod horizon;
 mod ink;
 mod lettering;
 pub(crate) mod light;
 mod noise;
 pub(crate) mod paint;
+mod strata;
 mod style;
 pub(crate) mod water;
 
+pub use figure::paint_figure;
 pub use frame::MapFrame;
+pub use geology::geological_map;
 #[cfg(feature = "app")]
 pub(crate) use lettering::round_below;
 pub use style::MapStyle;
@@ -48,6 +54,7 @@ fn draw(surface: &Surface, style: &MapStyle, width: u32, height: u32) -> Option<
     if style.marks {
         ink::draw_marks(&mut land, surface, frame);
     }
+    ink::draw_cuts(&mut land, &style.cuts, frame);
     lettering::sheet(&land, surface, style, frame, width, height)
 }
 

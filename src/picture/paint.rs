@@ -7,7 +7,8 @@ use super::colour::{Encoder, smoothstep};
 use super::cover::Palette;
 use super::field::Field;
 use super::light::Relief;
-use super::water::{self, Lakes, Rivers};
+use super::strata::Strata;
+use super::water::{self, Course, Lakes, Rivers};
 use super::{MapFrame, MapStyle, cover, opaque};
 use crate::surface::Surface;
 
@@ -44,21 +45,48 @@ pub(crate) fn lowland(ground: &[f32]) -> f32 {
     lowland.clamp(-400.0, 400.0)
 }
 
+/// The shape of the land and its water on the pixels of a map.
+pub(super) struct Terrain {
+    ground: Field,
+    pub(super) lakes: Lakes,
+    pub(super) relief: Relief,
+    pub(super) courses: Vec<Course>,
+}
+
+impl Terrain {
+    pub(super) fn new(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Self {
+        let (width, height) = (frame.width as usize, frame.height as usize);
+        let spacing = (surface.spacing / frame.metres_per_pixel()) as f32;
+        let ground = ground(surface, width, height, spacing);
+        let lakes = Lakes::new(surface, width, height, spacing);
+        let relief = Relief::new(
+            &ground,
+            &lakes.depth,
+            frame.metres_per_pixel() as f32,
+            spacing,
+            style.vertical_exaggeration as f32,
+        );
+        let courses = water::courses(surface, &relief, frame);
+        Self {
+            ground,
+            lakes,
+            relief,
+            courses,
+        }
+    }
+}
+
 /// The land's pixels, with its water and without marks and letters.
 pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Option<Pixmap> {
     let (width, height) = (frame.width as usize, frame.height as usize);
     let metres_per_pixel = frame.metres_per_pixel() as f32;
-    let spacing = (surface.spacing / frame.metres_per_pixel()) as f32;
-    let ground = ground(surface, width, height, spacing);
-    let lakes = Lakes::new(surface, width, height, spacing);
-    let relief = Relief::new(
-        &ground,
-        &lakes.depth,
-        metres_per_pixel,
-        spacing,
-        style.vertical_exaggeration as f32,
-    );
-    let courses = water::courses(surface, &relief, frame);
+    let Terrain {
+        ground,
+        lakes,
+        relief,
+        courses,
+    } = Terrain::new(surface, style, frame);
+    let strata = Strata::new(surface, frame);
     let floodplain = water::floodplain(&courses, frame);
     let rivers = Rivers::new(&courses, frame)?;
     let palette = Palette::new(lowland(&ground.data));
@@ -100,7 +128,9 @@ pub(super) fn land(surface: &Surface, style: &MapStyle, frame: MapFrame) -> Opti
                 let spot = relief.spot(x, y, height_share);
                 let at = place(x as f32, y as f32);
                 let broad = broad.sample(x as f32 / coarse, y as f32 / coarse);
-                let mut colour = palette.land(at, z, broad, floodplain.at(x, y), &spot) * spot.light;
+                let stone = strata.as_ref().map(|strata| strata.stone(x, y));
+                let land = palette.land(at, z, broad, floodplain.at(x, y), &spot, stone);
+                let mut colour = land * spot.light;
                 colour = rivers.over(colour, i);
                 let wet = lakes.cover.data[i];
                 if wet > 0.0 {

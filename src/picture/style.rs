@@ -1,5 +1,7 @@
 //! Choices a map may make.
 
+use glam::DVec2;
+
 /// How a relief map is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapStyle {
@@ -11,6 +13,8 @@ pub struct MapStyle {
     pub marks: bool,
     /// Draw caption, scale bar and neat line.
     pub lettering: bool,
+    /// Ends of slices (plan, metres), drawn as dashed lines from A to A', B to B', …
+    pub cuts: Vec<[DVec2; 2]>,
 }
 
 impl Default for MapStyle {
@@ -20,6 +24,7 @@ impl Default for MapStyle {
             vertical_exaggeration: 1.0,
             marks: true,
             lettering: true,
+            cuts: Vec::new(),
         }
     }
 }

@@ -172,6 +172,7 @@ mod tests {
             rivers: Vec::new(),
             plates: Vec::new(),
             faults: Vec::new(),
+            folds: Vec::new(),
             strata: None,
             elapsed_yr: 0.0,
         }

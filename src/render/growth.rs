@@ -1,14 +1,18 @@
 //! The land on the graphics card: its shape, its light and its colours, growing towards the newest surface.
 
+use std::sync::Arc;
+
 use super::layout::{Ground, Reach};
-use super::passes::{self, Pipelines, Sheet};
+use super::passes::{Pipelines, Sheet};
+use super::pile::Pile;
 use super::quality::RenderQuality;
 use super::upload;
-use super::work::{Colours, Grid, RAMP, Work, ramps, reach_buffer};
+use super::work::{Aslant, Colours, Grid, RAMP, Work, ramps, reach_buffer};
 use crate::gpu::Gpu;
 use crate::picture::cover::{SNOW_LINE, TREE_LINE};
 use crate::picture::paint::{SUMMITS, lowland};
-use crate::surface::{Raster, Surface};
+use crate::rock::Stratigraphy;
+use crate::surface::{Raster, StrataMap, Surface};
 
 /// Time in which the land as drawn comes two thirds of the way to the land as it is, s.
 const GROWTH_S: f32 = 0.12;
@@ -31,6 +35,9 @@ pub(super) struct Growth {
     uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
     ramps: Sheet,
+    pile: Pile,
+    /// What the pile's table was made from.
+    stratigraphy: Option<Arc<Stratigraphy>>,
     reaches: wgpu::Buffer,
     reach_count: u32,
     grid: Option<Grid>,
@@ -47,12 +54,15 @@ pub(super) struct Growth {
     left: Option<u32>,
     /// The evening's light is not that of the land as drawn.
     evening_is_old: bool,
+    /// All colours are to be others, at once.
+    recolours: bool,
     /// Next part of the light and colours to be computed.
     strip: u32,
     rivers_changed: bool,
     /// Time since rivers were drawn, s.
     rivers_s: f32,
     heights: Vec<f32>,
+    layers: Vec<[f32; 2]>,
     scratch: [Vec<f32>; 2],
     bytes: Vec<u8>,
     pieces: Vec<Reach>,
@@ -88,6 +98,8 @@ impl Growth {
                 ..wgpu::SamplerDescriptor::default()
             }),
             ramps,
+            pile: Pile::none(gpu),
+            stratigraphy: None,
             reaches: reach_buffer(device, 4096),
             reach_count: 0,
             grid: None,
@@ -98,10 +110,12 @@ impl Growth {
             leaps: false,
             left: None,
             evening_is_old: true,
+            recolours: false,
             strip: 0,
             rivers_changed: true,
             rivers_s: 0.0,
             heights: Vec::new(),
+            layers: Vec::new(),
             scratch: [Vec::new(), Vec::new()],
             bytes: Vec::new(),
             pieces: Vec::new(),
@@ -127,6 +141,14 @@ impl Growth {
         upload::heights(&raster.data, self.towards.0, &mut self.heights);
         let heights = bytemuck::cast_slice(&self.heights);
         grid.new_height.fill(&gpu.queue, heights, size_of::<f32>() as u32);
+        self.take_pile(gpu, surface.strata.as_deref());
+        let Some(grid) = &self.grid else { return };
+        if let Some(map) = surface.strata.as_deref() {
+            upload::layers(map, raster, self.pile.range_m, &mut self.layers);
+            let layers = bytemuck::cast_slice(&self.layers);
+            grid.new_layers
+                .fill(&gpu.queue, layers, size_of::<[f32; 2]>() as u32);
+        }
         upload::water(surface, &mut self.scratch, &mut self.bytes);
         grid.new_water.fill(&gpu.queue, &self.bytes, 4);
         upload::reaches(surface, &mut self.pieces);
@@ -139,6 +161,18 @@ impl Growth {
         self.rivers_changed = true;
         self.since_s = 0.0;
         self.left = None;
+    }
+
+    /// Takes the table of the pile under a land over, if it is another one: between two piles nothing grows.
+    fn take_pile(&mut self, gpu: &Gpu, map: Option<&StrataMap>) {
+        let pile = map.map(|map| &map.stratigraphy);
+        if pile == self.stratigraphy.as_ref() {
+            return;
+        }
+        self.pile = pile.map_or_else(|| Pile::none(gpu), |pile| Pile::new(gpu, pile));
+        self.ground.pile = self.pile.range_m;
+        self.stratigraphy = pile.cloned();
+        self.first = true;
     }
 
     /// The next land is another one, not this one some years later: until it is there it is drawn whole, never in strips
@@ -160,19 +194,39 @@ impl Growth {
         }
     }
 
+    /// Shows so much of the geological map's colours, 0 to 1; none where no layers are known.
+    pub(super) fn show_geology(&mut self, share: f32) {
+        let share = if self.pile.range_m > 0.0 {
+            share.clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        if self.ground.geology != share {
+            self.ground.geology = share;
+            self.recolours = true;
+        }
+    }
+
     /// What a window looks at.
     pub(super) fn seen(&self) -> Option<Seen<'_>> {
         let colours = self.colours.as_ref()?;
         Some(Seen {
             sheet: &colours.sheet.view,
-            evening: colours.evening.as_ref().map(|evening| &evening.view),
+            evening: colours.aslant.as_ref().map(|aslant| &aslant.evening.view),
+            rock: colours.aslant.as_ref().map(|aslant| &aslant.rock.view),
             stand: &self.grid.as_ref()?.stand.view,
+            pile: &self.pile.view,
         })
     }
 
     /// Height of the plains, metres, as drawn now.
     pub(super) fn lowland(&self) -> f32 {
         self.ground.lowland
+    }
+
+    /// True if the layers under the land are known.
+    pub(super) fn layered(&self) -> bool {
+        self.stratigraphy.is_some()
     }
 
     /// Lets `dt_s` seconds of growth happen on a coloured land of `size` texels; `aslant`: in the evening's light too.
@@ -190,10 +244,10 @@ impl Growth {
             .as_ref()
             .is_none_or(|colours| colours.sheet.size != size);
         let new_evening = aslant && self.evening_is_old;
-        if self.grid.is_none() || (self.settled() && !new_size && !new_evening) {
+        if self.grid.is_none() || (self.settled() && !new_size && !new_evening && !self.recolours) {
             return;
         }
-        let whole = self.first || self.leaps || new_size || new_evening;
+        let whole = self.first || self.leaps || new_size || new_evening || self.recolours;
         self.since_s += dt_s;
         let arrived = self.first || self.since_s > SETTLED_S;
         let blend = if arrived {
@@ -221,8 +275,8 @@ impl Growth {
         let (Some(grid), Some(colours)) = (&self.grid, &mut self.colours) else {
             return;
         };
-        if aslant && colours.evening.is_none() {
-            colours.evening = Some(Sheet::with_halves(&gpu.device, "evening", passes::SHEET, size));
+        if aslant && colours.aslant.is_none() {
+            colours.aslant = Some(Aslant::new(&gpu.device, size));
         }
         let work = Work {
             gpu,
@@ -261,7 +315,13 @@ impl Growth {
             (blend * strips as f32).min(1.0)
         };
         work.soak(encoder, part, soaked);
-        work.sheet(encoder, self.newer, &self.ramps, part(size[1]), aslant);
+        work.sheet(
+            encoder,
+            self.newer,
+            (&self.ramps, &self.pile),
+            part(size[1]),
+            aslant,
+        );
         self.strip = (strip + 1) % strips;
         self.left = self
             .left
@@ -271,6 +331,7 @@ impl Growth {
             work.halves(encoder);
         }
         self.first = false;
+        self.recolours = false;
         self.leaps &= !arrived;
     }
 }
@@ -281,6 +342,10 @@ pub(super) struct Seen<'a> {
     pub(super) sheet: &'a wgpu::TextureView,
     /// The land at evening, if it has been seen aslant.
     pub(super) evening: Option<&'a wgpu::TextureView>,
+    /// Which place in the pile of layers crops out, likewise.
+    pub(super) rock: Option<&'a wgpu::TextureView>,
+    /// The looks of that pile.
+    pub(super) pile: &'a wgpu::TextureView,
     /// Height in km in the first channel.
     pub(super) stand: &'a wgpu::TextureView,
 }

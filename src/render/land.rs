@@ -23,6 +23,10 @@ pub struct LandStyle {
     pub haze: f32,
     /// Part of the light that is left: 1 all, 0 dark.
     pub lamp: f32,
+    /// Share of the geological map's colours, 0 (the land as it looks) to 1 (each layer in the colour of its
+    /// [`Rock`](crate::rock::Rock)); to be moved from one to the other in half a second or so. While it moves, all colours
+    /// are computed anew in each frame. Without effect where no layers are known.
+    pub geology: f32,
 }
 
 impl Default for LandStyle {
@@ -31,6 +35,7 @@ impl Default for LandStyle {
             exaggeration: 1.8,
             haze: 1.0,
             lamp: 1.0,
+            geology: 0.0,
         }
     }
 }
@@ -181,6 +186,7 @@ impl LandRenderer {
         let texels = (size * per_pixel).round();
         let texels = [texels.x, texels.y].map(|side| (side as u32).clamp(16, most));
         self.growth.exaggerate(style.exaggeration);
+        self.growth.show_geology(style.geology);
         self.growth
             .step(gpu, &self.pipelines, encoder, texels, dt_s, tilted);
         let cells = self.mesh_cells();
@@ -204,6 +210,7 @@ impl LandRenderer {
             lamp: style.lamp,
             encodes: f32::from(u8::from(self.encodes)),
             dusk: smoothstep(0.0, DUSK, camera.tilt() as f32),
+            layered: f32::from(u8::from(self.growth.layered())),
         };
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         if tilted {
@@ -223,6 +230,8 @@ impl LandRenderer {
             (3, Some(texture(seen.stand))),
             (4, Some(self.air.as_entire_binding())),
             (5, seen.evening.map(texture)),
+            (6, seen.rock.map(texture)),
+            (7, Some(texture(seen.pile))),
         ];
         let entries: Vec<_> = all
             .into_iter()
@@ -288,9 +297,9 @@ impl LandRenderer {
             ..wgpu::RenderPassDescriptor::default()
         });
         let (pipeline, bindings): (_, &[u32]) = if dusk {
-            (&self.pipelines.dusk, &[0, 1, 2, 3, 4, 5])
+            (&self.pipelines.dusk, &[0, 1, 2, 3, 4, 5, 6, 7])
         } else {
-            (&self.pipelines.terrain, &[0, 1, 3, 4, 5])
+            (&self.pipelines.terrain, &[0, 1, 3, 4, 5, 6, 7])
         };
         let (Some(sky), Some(land)) = (
             self.looks(gpu, &self.pipelines.sky, &[0, 4]),

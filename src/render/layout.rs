@@ -31,6 +31,8 @@ pub struct Ground {
     pub ramp_low: f32,
     pub ramp_high: f32,
     pub aslant: f32,
+    pub pile: f32,
+    pub geology: f32,
 }
 
 /// As `View` in `shaders/land.wgsl`, which says what the fields mean.
@@ -55,6 +57,7 @@ pub struct View {
     pub lamp: f32,
     pub encodes: f32,
     pub dusk: f32,
+    pub layered: f32,
 }
 
 /// As `Air` in `shaders/land.wgsl`: colours in linear light.
@@ -101,6 +104,7 @@ pub const SHADERS: [(&str, &str); 7] = [
 /// What several shaders share.
 const GROUND: &str = include_str!("../../shaders/ground.wgsl");
 const ENCODE: &str = include_str!("../../shaders/encode.wgsl");
+const PILE: &str = include_str!("../../shaders/pile.wgsl");
 
 /// Looks in each direction when light is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,10 +138,19 @@ pub(super) const RINGS: u32 = 12;
 pub(super) const EVENING_AZIMUTH: f64 = 290.0 / 180.0 * std::f64::consts::PI;
 const EVENING_ELEVATION: f64 = 0.27;
 
+/// Loose gravel and sand that rivers have laid down.
+const ALLUVIUM: u32 = 0xdc_d8c6;
+
 /// Rows of the ramp texture: colours by height.
 pub(super) const RAMP_ROWS: [&str; 3] = ["OPEN", "WOOD", "ROCK"];
 /// Heights that ramps know.
 pub(super) const RAMP_STEPS: u32 = 1024;
+
+/// Rows of the pile's table: how beds differ from their layer and how hard they are, the layers' stone, and their colour
+/// on geological maps.
+pub(super) const PILE_ROWS: [&str; 3] = ["BEDS", "STONE", "CHART"];
+/// Steps of the pile from its first surface to below its last layer.
+pub(super) const PILE_STEPS: u32 = 2048;
 
 /// Factor from one step to the next, so that `steps` steps from `first` cells reach [`FARTHEST_LOOK`].
 fn stride(steps: u32, first: f64) -> f64 {
@@ -185,8 +198,11 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
         constant(name, &float(value));
     }
     constant("RAMP_STEPS", &float(f64::from(RAMP_STEPS)));
-    for (row, name) in RAMP_ROWS.iter().enumerate() {
-        constant(name, &row);
+    constant("PILE_STEPS", &float(f64::from(PILE_STEPS)));
+    for names in [RAMP_ROWS, PILE_ROWS] {
+        for (row, name) in names.iter().enumerate() {
+            constant(name, &row);
+        }
     }
     let palette = Palette::new(0.0);
     let colours = [
@@ -198,6 +214,7 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
         ("SHORE", palette.shore),
         ("RIVER", linear(RIVER)),
         ("VALLEY", palette.haze),
+        ("ALLUVIUM", linear(ALLUVIUM)),
     ];
     for (name, Vec3 { x, y, z }) in colours {
         constant(name, &format_args!("vec3<f32>({x:?}, {y:?}, {z:?})"));
@@ -211,10 +228,10 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
         "land" => ENCODE,
         _ => GROUND,
     };
-    let more = if name == "sheet" {
-        [SHADERS[2].1, ENCODE].concat()
-    } else {
-        String::new()
+    let more = match name {
+        "sheet" => [SHADERS[2].1, ENCODE, PILE].concat(),
+        "land" => PILE.to_owned(),
+        _ => String::new(),
     };
     format!("{text}{shared}{more}{own}")
 }

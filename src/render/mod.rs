@@ -13,6 +13,7 @@ mod land;
 pub mod layout;
 mod offscreen;
 mod passes;
+mod pile;
 mod quality;
 mod upload;
 mod work;

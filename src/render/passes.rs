@@ -17,6 +17,12 @@ pub(super) const LIGHT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const RIVERS: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// The coloured land: sRGB, or roots of linear light, both without the card's own coding, which costs software more.
 pub(super) const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Layers under a new land.
+pub(super) const NEW_LAYERS: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+/// The same of the land as drawn.
+pub(super) const LAYERS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+/// Places in the pile of layers.
+pub(super) const ROCK: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// Colours by height.
 pub(super) const RAMP: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Depth of the mesh.
@@ -119,7 +125,12 @@ impl Pipelines {
             .make(device)
         };
         Self {
-            grow: onto("grow", &grow, "grow", &[plain(HEIGHT), plain(WATER)]),
+            grow: onto(
+                "grow",
+                &grow,
+                "grow",
+                &[plain(HEIGHT), plain(WATER), plain(LAYERS)],
+            ),
             relief: onto("relief", &relief, "relief", &[plain(SHAPE), plain(SHAPE)]),
             forms: onto("forms", &relief, "forms", &[plain(HEIGHT)]),
             form_slopes: onto("form slopes", &relief, "form_slopes", &[plain(SHAPE)]),
@@ -129,7 +140,12 @@ impl Pipelines {
             meadow: ribbons("meadow", "meadow_ribbon", "meadow"),
             soak: onto("soak", &rivers, "soak", &[blended(RIVERS, BY_CONSTANT)]),
             sheet: onto("sheet", &sheet, "sheet", &[plain(SHEET)]),
-            sheets: onto("sheets", &sheet, "sheets", &[plain(SHEET), plain(SHEET)]),
+            sheets: onto(
+                "sheets",
+                &sheet,
+                "sheets",
+                &[plain(SHEET), plain(SHEET), plain(ROCK)],
+            ),
             shrink: onto("shrink", &shrink, "shrink", &[plain(SHEET)]),
             plan: seen("plan", "plan_quad", "plan", None, 1),
             sky: seen(

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::layout::Reach;
 use crate::picture::colour::smoothstep;
 use crate::picture::water::drawn_width;
-use crate::surface::{River, Surface};
+use crate::surface::{Raster, River, StrataMap, Surface};
 
 /// Greatest lake depth that a byte holds, metres.
 pub(super) const DEEPEST: f32 = 900.0;
@@ -25,6 +25,34 @@ pub(super) fn heights(metres: &[f32], lowland: f32, out: &mut Vec<f32>) {
     out.clear();
     let sound = |&height: &f32| if height.is_finite() { height } else { lowland };
     out.extend(metres.iter().map(sound));
+}
+
+/// For each cell of `grid`, the place in the pile of the rock at its surface, less a half (0 is the middle of the
+/// `range_m` metres that the pile's table reaches over), and the thickness of the sediment on it, metres.
+pub(super) fn layers(map: &StrataMap, grid: &Raster, range_m: f32, out: &mut Vec<[f32; 2]>) {
+    let sound = |value: f32, least: f32, most: f32| {
+        if value.is_finite() {
+            value.clamp(least, most)
+        } else {
+            0.0
+        }
+    };
+    let texel = |depth: f32, sediment: f32| {
+        let place = sound(depth / range_m - 0.5, -2.0, 2.0);
+        [place, sound(sediment, 0.0, DEEPEST)]
+    };
+    out.clear();
+    if (map.depth.width, map.depth.height) == (grid.width, grid.height) {
+        let cells = map.depth.data.iter().zip(&map.sediment.data);
+        out.extend(cells.map(|(&depth, &sediment)| texel(depth, sediment)));
+        return;
+    }
+    for row in 0..grid.height {
+        out.extend((0..grid.width).map(|column| {
+            let at = grid.centre(column, row);
+            texel(map.depth.sample(at), map.sediment.sample(at))
+        }));
+    }
 }
 
 /// Water of each cell as four bytes: part of the ground around that is under water (the shore is at a half), drainage,

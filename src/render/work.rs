@@ -2,6 +2,7 @@
 
 use super::layout::{FORM_CELLS, LIGHT_CELLS, MEADOW_TEXELS, RAMP_ROWS, RAMP_STEPS, Reach};
 use super::passes::{self, Pipelines, Sheet, group, pass};
+use super::pile::Pile;
 use crate::gpu::Gpu;
 use crate::picture::cover::Palette;
 
@@ -16,6 +17,8 @@ pub(super) struct Grid {
     /// The land as drawn, before and after a step.
     height: [Sheet; 2],
     water: [Sheet; 2],
+    pub(super) new_layers: Sheet,
+    layers: [Sheet; 2],
     slopes: Sheet,
     /// Height in km in the first channel.
     pub(super) stand: Sheet,
@@ -33,8 +36,16 @@ pub(super) struct Colours {
     variation: Sheet,
     /// The land in the printed map's colours.
     pub(super) sheet: Sheet,
+    /// The land seen aslant, if it has been.
+    pub(super) aslant: Option<Aslant>,
+}
+
+/// What is known of the land where it is seen aslant.
+pub(super) struct Aslant {
     /// The land at evening, with its smaller copies.
-    pub(super) evening: Option<Sheet>,
+    pub(super) evening: Sheet,
+    /// Which place in the pile of layers crops out.
+    pub(super) rock: Sheet,
 }
 
 /// Everything is drawn over.
@@ -79,12 +90,21 @@ impl Work<'_> {
         self.run(
             encoder,
             &self.pipelines.grow,
-            (&[&grid.height[1 - newer], &grid.water[1 - newer]], CLEAR),
+            (
+                &[
+                    &grid.height[1 - newer],
+                    &grid.water[1 - newer],
+                    &grid.layers[1 - newer],
+                ],
+                CLEAR,
+            ),
             &[
                 (1, look(&grid.height[newer])),
                 (2, look(&grid.water[newer])),
                 (3, look(&grid.new_height)),
                 (4, look(&grid.new_water)),
+                (5, look(&grid.layers[newer])),
+                (6, look(&grid.new_layers)),
             ],
             (0, grid.size[1]),
         );
@@ -181,24 +201,21 @@ impl Work<'_> {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         newer: usize,
-        ramps: &Sheet,
+        (ramps, pile): (&Sheet, &Pile),
         rows: (u32, u32),
         aslant: bool,
     ) {
         let (grid, colours) = (self.grid, self.colours);
-        let both: Vec<&Sheet> = [Some(&colours.sheet), colours.evening.as_ref().filter(|_| aslant)]
-            .into_iter()
-            .flatten()
-            .collect();
-        let pipeline = if both.len() > 1 {
-            &self.pipelines.sheets
-        } else {
-            &self.pipelines.sheet
-        };
+        let mut targets = vec![&colours.sheet];
+        let mut pipeline = &self.pipelines.sheet;
+        if let Some(Aslant { evening, rock }) = colours.aslant.as_ref().filter(|_| aslant) {
+            targets.extend([evening, rock]);
+            pipeline = &self.pipelines.sheets;
+        }
         self.run(
             encoder,
             pipeline,
-            (&both, wgpu::LoadOp::Load),
+            (&targets, wgpu::LoadOp::Load),
             &[
                 (1, wgpu::BindingResource::Sampler(self.sampler)),
                 (2, look(&grid.slopes)),
@@ -210,6 +227,8 @@ impl Work<'_> {
                 (8, look(&colours.variation)),
                 (9, look(ramps)),
                 (10, look(&colours.meadows[1])),
+                (11, look(&grid.layers[newer])),
+                (12, wgpu::BindingResource::TextureView(&pile.view)),
             ],
             rows,
         );
@@ -218,7 +237,7 @@ impl Work<'_> {
     /// Makes the smaller copies of the evening.
     pub(super) fn halves(&self, encoder: &mut wgpu::CommandEncoder) {
         let device = &self.gpu.device;
-        let Some(sheet) = &self.colours.evening else {
+        let Some(Aslant { evening: sheet, .. }) = &self.colours.aslant else {
             return;
         };
         for level in 1..sheet.texture.mip_level_count() {
@@ -240,6 +259,15 @@ impl Work<'_> {
     }
 }
 
+impl Aslant {
+    pub(super) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        Self {
+            evening: Sheet::with_halves(device, "evening", passes::SHEET, size),
+            rock: Sheet::new(device, "rock", passes::ROCK, size),
+        }
+    }
+}
+
 impl Colours {
     pub(super) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
         let coarse = size.map(|side| side.div_ceil(MEADOW_TEXELS));
@@ -248,7 +276,7 @@ impl Colours {
             meadows: [(); 2].map(|()| Sheet::new(device, "meadows", passes::RIVERS, coarse)),
             variation: Sheet::new(device, "variation", passes::LIGHT, size),
             sheet: Sheet::new(device, "sheet", passes::SHEET, size),
-            evening: None,
+            aslant: None,
         }
     }
 
@@ -290,6 +318,11 @@ impl Grid {
                 sheet("height", passes::HEIGHT, 1),
             ],
             water: [sheet("water", passes::WATER, 1), sheet("water", passes::WATER, 1)],
+            new_layers: sheet("new layers", passes::NEW_LAYERS, 1),
+            layers: [
+                sheet("layers", passes::LAYERS, 1),
+                sheet("layers", passes::LAYERS, 1),
+            ],
             slopes: sheet("slopes", passes::SHAPE, 1),
             stand: sheet("stand", passes::SHAPE, 1),
             form_heights: sheet("form heights", passes::HEIGHT, FORM_CELLS),

@@ -9,10 +9,11 @@ pub use range::RangeFacts;
 
 use crate::export::digest;
 use crate::gesture::hand::ContactStats;
+use crate::mountain::fold::FoldStats;
 use crate::mountain::tectonics::TectonicReport;
 use crate::mountain::transport::TransportReport;
 use crate::mountain::{MountainParams, Plate, PlateState};
-use crate::sim::{SessionCounts, Sim};
+use crate::sim::{FoldingLayer, SessionCounts, Sim, World};
 use crate::terrain::{Flow, NodeId, Tin};
 use crate::units::KM;
 
@@ -34,6 +35,8 @@ pub struct Report {
     pub transport: Option<TransportFacts>,
     /// The uplift at that moment.
     pub uplift: Option<UpliftFacts>,
+    /// The folds at that moment, longest first.
+    pub folds: Vec<FoldFacts>,
     /// The land.
     pub terrain: TerrainFacts,
     /// The touches.
@@ -47,6 +50,8 @@ pub struct Report {
 /// What went into a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Inputs {
+    /// The pile of rock layers at the end; none where the rock is all alike.
+    pub layers: Option<String>,
     /// Title of the gesture file, or the map that was eroded.
     pub title: String,
     /// The one seed.
@@ -208,6 +213,10 @@ pub struct TerrainFacts {
     pub uplifted_km3: f64,
     /// Rock taken by rivers and landslides, km³.
     pub eroded_km3: f64,
+    /// Volume that rivers and lakes laid down, km³.
+    pub deposited_km3: f64,
+    /// Volume of sediment carried off the land, km³.
+    pub exported_km3: f64,
     /// Area that drains over the outlets, km²: the whole map.
     pub outlet_area_km2: f64,
     /// Lakes of at least a node.
@@ -241,6 +250,8 @@ impl TerrainFacts {
             mean_m: mean,
             uplifted_km3: 0.0,
             eroded_km3: 0.0,
+            deposited_km3: 0.0,
+            exported_km3: 0.0,
             outlet_area_km2: outlet_area(flow) / km2,
             lakes: lakes.count(),
             lake_area_km2: lake_area / km2,
@@ -279,6 +290,43 @@ pub struct ContactFacts {
     pub rolled_back: u64,
 }
 
+/// The folds of one pair of layers.
+#[derive(Clone, Debug, Serialize)]
+pub struct FoldFacts {
+    /// The layer that folds, and the one it folds over.
+    pub layers: [String; 2],
+    /// Wavelength asked for, m.
+    pub wavelength_m: f64,
+    /// Mean wavelength where the land is compressed, m.
+    pub realised_m: f64,
+    /// Edges of the top skeleton.
+    pub top_edges: usize,
+    /// Lines of the bottom skeleton.
+    pub bottom_edges: usize,
+    /// Part of the crests' nodes where a crest ends.
+    pub end_fraction: f64,
+    /// Part where crests meet.
+    pub triple_fraction: f64,
+    /// Mean length of crests, m.
+    pub mean_length: f64,
+}
+
+impl FoldFacts {
+    fn new(world: &World, layer: FoldingLayer, stats: &FoldStats) -> Self {
+        let name = |layer| world.stratigraphy.layer_name(layer).to_owned();
+        Self {
+            layers: [name(layer.interface - 1), name(layer.interface)],
+            wavelength_m: stats.wavelength,
+            realised_m: stats.realised_wavelength,
+            top_edges: stats.top_edges,
+            bottom_edges: stats.bottom_edges,
+            end_fraction: stats.end_fraction,
+            triple_fraction: stats.triple_fraction,
+            mean_length: stats.mean_chain_length,
+        }
+    }
+}
+
 /// Numbers that were none.
 #[derive(Clone, Debug, Serialize)]
 pub struct QuarantineFacts {
@@ -294,12 +342,14 @@ impl Report {
         let world = sim.world();
         let params = sim.params();
         let extent = world.map.extent();
-        let risen = world.strata.displaced(0).unwrap_or(&[]);
+        let risen = world.strata.base();
         let mut terrain = TerrainFacts::new(&world.tin, &world.z, flow, risen);
         terrain.years = world.time_yr;
         terrain.steps = world.totals.steps;
         terrain.uplifted_km3 = world.totals.uplifted_m3 / 1e9;
         terrain.eroded_km3 = world.totals.eroded_m3 / 1e9;
+        terrain.deposited_km3 = world.totals.deposited_m3 / 1e9;
+        terrain.exported_km3 = world.totals.exported_m3 / 1e9;
         let counts = sim.counts();
         let quarantine = sim.quarantine();
         let motion = sim.last_motion();
@@ -307,6 +357,7 @@ impl Report {
             format_version: REPORT_VERSION,
             orogen: env!("CARGO_PKG_VERSION"),
             inputs: Inputs {
+                layers: Some(world.stratigraphy.name().to_owned()),
                 title: title.to_owned(),
                 seed: world.seed,
                 nodes: world.tin.len(),
@@ -324,6 +375,11 @@ impl Report {
                 .collect(),
             transport: motion.map(|report| TransportFacts::new(&report.transport)),
             uplift: motion.map(|report| UpliftFacts::new(&report)),
+            folds: sim
+                .fold_stats()
+                .into_iter()
+                .map(|(layer, stats)| FoldFacts::new(world, layer, &stats))
+                .collect(),
             terrain,
             contacts: ContactFacts::new(&sim.contact_stats(), counts),
             quarantine: QuarantineFacts {

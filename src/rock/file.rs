@@ -45,6 +45,8 @@ struct FileText {
 #[serde(deny_unknown_fields)]
 struct BasementText {
     name: Spanned<String>,
+    #[serde(default)]
+    uplift: Option<Spanned<f64>>,
     viscosity_pa_s: Spanned<f64>,
     erodibility: Spanned<f64>,
     talus_deg: Spanned<f64>,
@@ -83,7 +85,7 @@ impl Stratigraphy {
             let before = &bytes[..at.min(bytes.len())];
             StratigraphyError::File {
                 name: name.to_owned(),
-                line: before.iter().filter(|&&b| b == b'\n').count() + 1,
+                line: before.split(|&b| b == b'\n').count(),
                 problem: problem.lines().collect::<Vec<_>>().join(" "),
             }
         })
@@ -112,8 +114,9 @@ impl Stratigraphy {
         let basement = self.basement();
         let _ = write!(
             out,
-            "\n[basement]\nname = {}\nviscosity_pa_s = {:e}\n{}",
+            "\n[basement]\nname = {}\nuplift = {}\nviscosity_pa_s = {:e}\n{}",
             quoted(&basement.name),
+            number(basement.uplift),
             basement.viscosity_pa_s,
             rock(&basement.rock)
         );
@@ -168,6 +171,10 @@ fn read(bytes: &[u8]) -> Result<Stratigraphy, Fault> {
     let name = named(&file.name, "name")?;
     let basement = Basement {
         name: named(&file.basement.name, "basement.name")?,
+        uplift: match &file.basement.uplift {
+            Some(uplift) => within(uplift, bounds::UPLIFT, "basement")?,
+            None => 1.0,
+        },
         viscosity_pa_s: within(&file.basement.viscosity_pa_s, bounds::VISCOSITY, "basement")?,
         rock: rock(
             &file.basement.erodibility,
@@ -294,6 +301,7 @@ pub(super) fn check(
             Err(value(outside(bound, found, path)))
         }
     };
+    number(bounds::UPLIFT, basement.uplift, "basement")?;
     number(bounds::VISCOSITY, basement.viscosity_pa_s, "basement")?;
     number(bounds::ERODIBILITY, basement.rock.erodibility, "basement")?;
     number(bounds::TALUS, basement.rock.talus_deg, "basement")?;

@@ -4,11 +4,13 @@
 //! crystalline basement. [`Column`] is the same pile at one place after folding: it tells how high each interface
 //! stands, and which rock is found at a height. Named piles are in [`preset`]; artists write their own as TOML files.
 
+mod bedding;
 mod column;
 mod file;
 pub mod preset;
 mod stratigraphy;
 
+pub use bedding::Bedding;
 pub use column::Column;
 pub use file::StratigraphyError;
 pub use stratigraphy::{

@@ -55,6 +55,9 @@ pub struct Layer {
 /// What lies under all layers, down to the Moho.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basement {
+    /// Part of the uplift that raises the pile as a whole. 1: the basement thickens with its cover (a thick-skinned
+    /// range); less: the cover glides on a weak layer and folds, while the basement stays behind (thin-skinned).
+    pub uplift: f64,
     /// What people call it.
     pub name: String,
     /// Viscosity, Pa s.
@@ -100,6 +103,8 @@ pub mod bounds {
     pub const CONTRAST: Bound = bound("contrast", "", 0.0, 1.0);
     /// Folding speed as a part of the uplift. The paper: 0.01–0.5.
     pub const FOLD: Bound = bound("fold", "", 0.0, 1.0);
+    /// Part of the uplift that raises the pile as a whole.
+    pub const UPLIFT: Bound = bound("uplift", "", 0.05, 2.0);
     /// Wavelength of folds.
     pub const WAVELENGTH: Bound = bound("wavelength_m", "m", 500.0, 20_000.0);
 
@@ -245,6 +250,11 @@ impl Stratigraphy {
     /// How the bed at a place stands up to erosion.
     pub fn bed_rock(&self, place: Place) -> BedRock {
         self.beds[self.first_bed[place.layer] + usize::from(place.bed)]
+    }
+
+    /// Beds above a layer, or above the basement.
+    pub(super) fn first_bed(&self, layer: usize) -> usize {
+        self.first_bed[layer]
     }
 
     /// Name of a layer, or of the basement.

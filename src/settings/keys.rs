@@ -1,6 +1,6 @@
 //! The one table of keys: name, help, what is allowed, and where in [`Settings`] it lives.
 
-use super::{Corner, Orientation, PIN_DIGITS, Settings};
+use super::{Corner, Orientation, PIN_DIGITS, Settings, Tools};
 use crate::gesture::command::Mode;
 
 /// Unit, range and step of a number.
@@ -161,6 +161,7 @@ const fn names<T: Copy, const N: usize>(table: &[(&'static str, T); N]) -> [&'st
 
 const ORIENTATIONS: [&str; 8] = names(&Orientation::ALL);
 const CORNERS: [&str; 4] = names(&Corner::ALL);
+const TOOLS: [&str; 3] = names(&Tools::ALL);
 
 fn name_of<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> Value {
     let found = table.iter().find(|(_, v)| v == value);
@@ -254,6 +255,18 @@ pub const KEYS: &[Key] = &[
         domain: Domain::Number(bound("km", 20.0, 500.0, 5.0)),
         get: |s| Value::Number(s.table.short_side_km),
         set: |s, v| set_number(&mut s.table.short_side_km, v),
+    },
+    Key {
+        section: "land",
+        name: "layers",
+        help: "Rock: plain, jura, zagros, andes, southern_alps, digne, or a TOML file (from this folder); after a restart.",
+        domain: Domain::Path,
+        get: |s| Value::Text(s.land.layers.clone()),
+        set: |s, v| {
+            if let Value::Text(name) = v {
+                s.land.layers.clone_from(name);
+            }
+        },
     },
     Key {
         section: "kiosk",
@@ -366,6 +379,14 @@ pub const KEYS: &[Key] = &[
         domain: Domain::Switch,
         get: |s| Value::Switch(s.view.readouts),
         set: |s, v| set_switch(&mut s.view.readouts, v),
+    },
+    Key {
+        section: "view",
+        name: "tools",
+        help: "Tools: \"visitor\" hides the artist's (folds, layers); \"auto\" does so in `orogen kiosk` only.",
+        domain: Domain::Choice(&TOOLS),
+        get: |s| name_of(&Tools::ALL, &s.view.tools),
+        set: |s, v| set_named(&Tools::ALL, &mut s.view.tools, v),
     },
     Key {
         section: "files",

@@ -41,6 +41,8 @@ pub struct Settings {
     pub mode: Mode,
     /// The table's frame.
     pub table: TableSettings,
+    /// What new land is made of.
+    pub land: LandSettings,
     /// The circle of an unattended table.
     pub kiosk: KioskSettings,
     /// The way in for staff.
@@ -64,6 +66,13 @@ pub struct TableSettings {
     pub orientation: Orientation,
     /// Ground along the table's short side, km.
     pub short_side_km: f64,
+}
+
+/// `[land]`: what new land is made of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LandSettings {
+    /// A preset of rock layers, or the path of a TOML file, relative to the settings file.
+    pub layers: String,
 }
 
 /// `[kiosk]`: times of the circle.
@@ -110,6 +119,8 @@ pub struct ViewSettings {
     pub reduced_motion: bool,
     /// Figures are shown from the start.
     pub readouts: bool,
+    /// Which tools are offered.
+    pub tools: Tools,
 }
 
 /// `[files]`: what is written. Paths are as in the file, relative to the caller's folder.
@@ -119,6 +130,18 @@ pub struct FileSettings {
     pub metrics: Option<String>,
     /// Folder of the log.
     pub log: Option<String>,
+}
+
+/// Which tools the table offers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tools {
+    /// All, but on unattended tables those for visitors.
+    #[default]
+    Auto,
+    /// All.
+    All,
+    /// Arrows and cross-sections; not the artist's: folds and layers.
+    Visitor,
 }
 
 /// How a touch device lies on the picture: turned by quarters, and perhaps mirrored.
@@ -154,6 +177,9 @@ impl Default for Settings {
                 orientation: Orientation::default(),
                 short_side_km: 100.0,
             },
+            land: LandSettings {
+                layers: "plain".to_owned(),
+            },
             kiosk: KioskSettings {
                 idle_s: 75.0,
                 countdown_s: 20.0,
@@ -174,6 +200,7 @@ impl Default for Settings {
             view: ViewSettings {
                 reduced_motion: false,
                 readouts: false,
+                tools: Tools::Auto,
             },
             files: FileSettings::default(),
         }
@@ -191,6 +218,20 @@ impl Settings {
     /// The map of a table of `size_mm`.
     pub fn plan_map(&self, size_mm: DVec2) -> PlanMap {
         PlanMap::new(size_mm, self.table.short_side_km * KM)
+    }
+}
+
+impl Tools {
+    /// All, with their names in the file.
+    pub const ALL: [(&'static str, Self); 3] = [
+        ("auto", Self::Auto),
+        ("all", Self::All),
+        ("visitor", Self::Visitor),
+    ];
+
+    /// True where only the visitors' tools are offered.
+    pub fn are_few(self, unattended: bool) -> bool {
+        self == Self::Visitor || (self == Self::Auto && unattended)
     }
 }
 

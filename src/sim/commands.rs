@@ -2,18 +2,25 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
+
+use super::Cut;
 use super::drive::Uplift;
 use super::step::{Sim, Snapshot};
 use super::world::Totals;
-use crate::gesture::command::{Action, Command};
+use crate::gesture::command::{Action, Command, REACH_MM};
 use crate::gesture::contact::Side;
+use crate::isostasy::Crust;
+use crate::mountain::fold::edit::MAX_EDITS;
+use crate::mountain::fold::{FoldEdit, FoldEditKind};
 use crate::mountain::strata::Strata;
 use crate::mountain::{PlateSet, TectonicField};
+use crate::rock::{Stratigraphy, preset};
 use crate::terrain::StartLand;
 use crate::units::MYR;
 
-/// How near to a tip or a fault an edit must be, table mm: the width of a finger and a bit.
-const REACH_MM: f64 = 25.0;
+/// Most notes on a cross-section.
+const MAX_NOTES: usize = 16;
 
 impl Sim {
     /// Keeps the land as it is for undo.
@@ -111,7 +118,12 @@ impl Sim {
     pub(super) fn command(&mut self, command: &Command) {
         let edits = matches!(
             command.action,
-            Action::Remove { .. } | Action::AddArrow(_) | Action::EditArrow(_) | Action::FlipFault { .. }
+            Action::Remove { .. }
+                | Action::AddArrow(_)
+                | Action::EditArrow(_)
+                | Action::FlipFault { .. }
+                | Action::TurnFolds { .. }
+                | Action::RaiseFolds { .. }
         );
         // One contact's edits are undone as one.
         let goes_on = command.contact.is_some() && self.state.edited_by == command.contact;
@@ -136,6 +148,10 @@ impl Sim {
                 self.state.counts.idle_commands += u64::from(!self.scrub(*years));
                 return;
             }
+            Action::Slice(_) | Action::FreezeSlice(_) | Action::LabelSlice { .. } | Action::CloseSlice => {
+                self.state.counts.idle_commands += u64::from(!self.slice(command));
+                return;
+            }
             Action::Undo => self.undo(command.side),
             Action::StartOver => self.start_over(command.side),
             Action::Remove { at } => world.plates.remove_at(map.to_plan(*at), now_yr, params).is_some(),
@@ -148,10 +164,12 @@ impl Sim {
                 world.plates.drag_tip(from, to, reach, now_yr, params).is_some()
             }
             Action::FlipFault { at } => self.flip_fault(map.to_plan(*at), reach),
-            // Tools belong to the table's controls; the globe and layers are not of this world.
-            Action::Tool(_) | Action::Mode(_) | Action::Layers(_) | Action::View { .. } | Action::Earth => {
-                false
-            }
+            Action::Layers(name) => preset::by_name(name).is_some_and(|pile| self.lay(pile, command.side)),
+            Action::Pile(pile) => self.lay(Arc::clone(pile), command.side),
+            Action::TurnFolds { path } => self.edit_folds(FoldEditKind::Turn, path),
+            Action::RaiseFolds { path, by } => self.edit_folds(FoldEditKind::Raise(*by), path),
+            // Tools belong to the table's controls; the globe is not of this world.
+            Action::Tool(_) | Action::Mode(_) | Action::View { .. } | Action::Earth => false,
         };
         if begins && !edited {
             self.state.undo.pop();
@@ -160,7 +178,8 @@ impl Sim {
             self.state.edited_by = command.contact.filter(|_| edits);
             self.state.stale = true;
             self.depart(now_yr);
-            if matches!(command.action, Action::AddArrow(_) | Action::EditArrow(_)) {
+            // What is taken away moves nothing any more.
+            if edits && !matches!(command.action, Action::Remove { .. } | Action::FlipFault { .. }) {
                 self.state.world.last_push_yr = now_yr;
             }
         } else {
@@ -168,7 +187,7 @@ impl Sim {
         }
     }
 
-    fn flip_fault(&mut self, at: glam::DVec2, reach: f64) -> bool {
+    fn flip_fault(&mut self, at: DVec2, reach: f64) -> bool {
         let near = self
             .state
             .uplift
@@ -184,13 +203,80 @@ impl Sim {
         distance <= reach
     }
 
+    /// Lays another pile of rock under the land as it stands.
+    fn lay(&mut self, pile: Arc<Stratigraphy>, side: Option<Side>) -> bool {
+        if *pile == *self.state.world.stratigraphy {
+            return false;
+        }
+        self.remember(side.unwrap_or(Side::South), false);
+        let world = &mut self.state.world;
+        world.stratigraphy = pile;
+        world.strata.relay();
+        world.skeletons.clear();
+        true
+    }
+
+    /// Turns or raises the folds along a line on the table, mm. False where nothing has folded yet.
+    fn edit_folds(&mut self, kind: FoldEditKind, path: &[DVec2]) -> bool {
+        let world = &mut self.state.world;
+        let path: Vec<DVec2> = path.iter().map(|&at| world.map.to_plan(at)).collect();
+        let Ok(edit) = FoldEdit::new(kind, &path) else {
+            return false;
+        };
+        if world.skeletons.is_empty() {
+            return false;
+        }
+        let mut edits = world.fold_edits.clone();
+        // A ridge that is raised again goes on from where it was.
+        edits.retain(|known| {
+            matches!(known.kind(), FoldEditKind::Turn)
+                || matches!(kind, FoldEditKind::Turn)
+                || known.path() != edit.path()
+        });
+        edits.push(edit);
+        let surplus = edits.len().saturating_sub(MAX_EDITS);
+        edits.drain(..surplus);
+        self.folding.edit(&mut self.state.world, edits);
+        self.field_of = None;
+        true
+    }
+
+    /// What is done to the cross-section of a side.
+    fn slice(&mut self, command: &Command) -> bool {
+        let map = self.state.world.map;
+        let cut = &mut self.state.cuts[command.side.unwrap_or(Side::South) as usize];
+        match (&command.action, cut.as_mut()) {
+            (Action::Slice(ends), Some(cut)) if !cut.frozen => {
+                cut.ends = [map.to_plan(ends.from), map.to_plan(ends.to)];
+            }
+            (Action::Slice(ends), None) => {
+                *cut = Some(Cut {
+                    ends: [map.to_plan(ends.from), map.to_plan(ends.to)],
+                    frozen: false,
+                    notes: Vec::new(),
+                });
+            }
+            (Action::FreezeSlice(frozen), Some(cut)) => cut.frozen = *frozen,
+            (Action::LabelSlice { at, text }, Some(cut)) if cut.notes.len() < MAX_NOTES => {
+                cut.notes.push((*at, text.clone()));
+            }
+            (Action::CloseSlice, Some(_)) => *cut = None,
+            _ => return false,
+        }
+        true
+    }
+
     /// The land as the seed gives it, at time zero. Undo of that side brings the old one back.
     fn start_over(&mut self, side: Option<Side>) -> bool {
         self.depart(self.state.world.time_yr);
         self.remember(side.unwrap_or(Side::South), true);
         let world = &mut self.state.world;
         world.z = StartLand::new(world.seed).heights(&world.tin);
-        world.strata = Strata::new(&[0.0], world.tin.len());
+        world.strata = Strata::new(world.tin.len());
+        world.skeletons.clear();
+        world.fold_edits.clear();
+        world.sediment.clear();
+        world.crust = Crust::new(world.tin.len());
         world.plates = PlateSet::default();
         world.time_yr = 0.0;
         world.last_push_yr = 0.0;

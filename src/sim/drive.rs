@@ -5,9 +5,11 @@ use std::sync::Arc;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::folding::{FoldingLayer, folding_layers};
 use super::step::Sim;
 use crate::gesture::event::{HandEvent, HandId, Leg};
 use crate::mountain::residue::Residue;
+use crate::mountain::strata::NodeFolds;
 use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateSet, PlateState, TectonicField};
 use crate::units::{KM, MYR};
 
@@ -30,6 +32,8 @@ pub(super) struct Uplift {
     pub(super) field: Field,
     /// m/yr at the nodes.
     pub(super) at_nodes: Vec<f64>,
+    /// Growth of folds at the nodes.
+    pub(super) folds: Vec<NodeFolds>,
     /// Faults, and when each stopped, years; `None` while it moves.
     pub(super) faults: Vec<(FaultTrace, Option<f64>)>,
     /// What it was computed for.
@@ -42,6 +46,7 @@ impl Uplift {
         Self {
             field: field.uplift.clone(),
             at_nodes: vec![0.0; nodes],
+            folds: Vec::new(),
             faults: Vec::new(),
             drive: Drive::default(),
         }
@@ -119,7 +124,7 @@ impl Sim {
         let mut uplift = |plates: &PlateSet| {
             self.tectonics
                 .compute_into(plates, extent, now_yr, params, &mut self.field);
-            self.field.uplift.clone()
+            self.field.clone()
         };
         let with = uplift(&before.without_residues());
         let without = uplift(&before.without_push(id, now_yr, params));
@@ -193,12 +198,24 @@ impl Sim {
         self.tectonics
             .compute_into(&world.plates, extent, world.time_yr, params, &mut self.field);
         let field = &self.field;
+        let part = world.stratigraphy.basement().uplift;
         let positions = world.tin.positions().par_iter().with_min_len(CHUNK);
         positions
-            .map(|&p| field.uplift_at(p))
+            .map(|&p| field.uplift_at(p) * part)
             .collect_into_vec(&mut self.rates);
+        let layers = self.folding_layers();
+        (self.fold_rates, self.skeletons) =
+            self.folding
+                .rates(&self.state.world, &self.field.folding, &layers);
+        let world = &self.state.world;
         self.field_of = Some((world.plates.clone(), world.time_yr));
         true
+    }
+
+    /// The pairs of layers that fold on this land.
+    pub fn folding_layers(&self) -> Vec<FoldingLayer> {
+        let world = &self.state.world;
+        folding_layers(&world.stratigraphy, world.tin.spacing(), self.params.fold_layers)
     }
 
     /// Computes the uplift of the plates as they are now, where it has changed, for those who look. The land feels it
@@ -217,18 +234,21 @@ impl Sim {
         self.ahead = false;
         let drive = self.drive();
         let (state, field) = (&mut self.state, &self.field);
-        let world = &state.world;
+        let now_yr = state.world.time_yr;
         state.stale = false;
+        state.world.skeletons.clone_from(&self.skeletons);
         let mut at_nodes = self.rates.clone();
-        for rate in at_nodes.iter_mut().filter(|rate| !rate.is_finite()) {
+        let mut folds = self.fold_rates.clone();
+        let all = folds.iter_mut().flat_map(|fold| &mut fold.raised);
+        for rate in at_nodes.iter_mut().chain(all).filter(|rate| !rate.is_finite()) {
             *rate = 0.0;
             state.quarantine.uplift_nodes += 1;
         }
         if drive.0.iter().any(|(_, doing)| *doing == PlateState::Pushing) {
             state.last_motion = Some(field.report);
+            state.last_folding = Some(Arc::new(field.folding.clone()));
         }
         // A fault stays on the map for a while when its push is spent.
-        let now_yr = world.time_yr;
         let mut faults: Vec<(FaultTrace, Option<f64>)> =
             field.faults.iter().map(|fault| (fault.clone(), None)).collect();
         for (old, stopped_yr) in &state.uplift.faults {
@@ -241,6 +261,7 @@ impl Sim {
         state.uplift = Arc::new(Uplift {
             field: field.uplift.clone(),
             at_nodes,
+            folds,
             faults,
             drive,
         });

@@ -10,6 +10,8 @@
 
 mod commands;
 mod drive;
+mod exposure;
+mod folding;
 mod history;
 mod params;
 mod resume;
@@ -19,6 +21,8 @@ mod view;
 mod wear;
 mod world;
 
+pub use crate::surface::Cut;
+pub use folding::{FoldingLayer, LayerSkeleton, folding_layers};
 pub use params::SimParams;
 pub use resume::Checkpoint;
 pub use step::{Quarantine, SessionCounts, Sim, StepReport};

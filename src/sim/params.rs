@@ -1,8 +1,9 @@
 //! All parameters of a session, apart from its state.
 
 use crate::gesture::params::GestureParams;
+use crate::isostasy::IsostasyParams;
 use crate::mountain::MountainParams;
-use crate::terrain::ErosionParams;
+use crate::terrain::{Deposition, ErosionParams};
 use crate::units::MYR;
 
 /// What [`Sim`](super::Sim) needs to know besides the world. Passed in, never stored in the [`World`](super::World).
@@ -14,6 +15,11 @@ pub struct SimParams {
     pub mountain: MountainParams,
     /// Rivers and landslides.
     pub erosion: ErosionParams,
+    /// How the crust floats on its mantle; `None`: it does not, thickening is uplift (the paper).
+    pub isostasy: Option<IsostasyParams>,
+    /// Most pairs of layers that fold, longest folds first. Default 2: finer folds are not seen while the land is
+    /// sculpted.
+    pub fold_layers: usize,
     /// Model years per second of session time at speed 1. Default 0.5 My; slower is a lesson, faster a blur.
     pub pace_yr_per_s: f64,
     /// Length of one erosion step in years, 25–100 ky. Longer steps make the drainage flicker (D23), shorter ones
@@ -31,12 +37,29 @@ pub struct SimParams {
     pub history_bytes: usize,
 }
 
+impl SimParams {
+    /// The paper's rules: [`MountainParams::paper`], a crust that does not float, and rivers that lay nothing down.
+    pub fn paper() -> Self {
+        Self {
+            mountain: MountainParams::paper(),
+            erosion: ErosionParams::default(),
+            isostasy: None,
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for SimParams {
     fn default() -> Self {
         Self {
             gesture: GestureParams::default(),
             mountain: MountainParams::default(),
-            erosion: ErosionParams::default(),
+            erosion: ErosionParams {
+                deposition: Some(Deposition::default()),
+                ..ErosionParams::default()
+            },
+            isostasy: Some(IsostasyParams::default()),
+            fold_layers: 2,
             pace_yr_per_s: 0.5 * MYR,
             erosion_dt_yr: 50_000.0,
             run_on_yr: 5.0 * MYR,

@@ -2,13 +2,16 @@
 
 use std::collections::VecDeque;
 
+use super::exposure::Exposure;
+use super::folding::Folding;
 use super::rollback::Rollback;
 use super::step::{Sim, State};
 use super::wear::Wear;
 use super::{SimParams, TICK_US, World};
 use crate::gesture::contact::{ContactEvent, InputFrame, Phase};
+use crate::isostasy::{Crust, Isostasy};
 use crate::mountain::{TectonicField, Tectonics};
-use crate::terrain::Erosion;
+use crate::terrain::{Erosion, Sediment};
 
 /// All that a session is at one moment: plain data, cheap to take and to keep. Input that waits for its tick is not part
 /// of it.
@@ -57,9 +60,19 @@ impl Sim {
             field: TectonicField::still(state.world.map.extent(), &params.mountain),
             field_of: None,
             rates: Vec::new(),
+            fold_rates: Vec::new(),
+            skeletons: Vec::new(),
+            folding: Folding::default(),
             ahead: false,
+            exposure: Exposure::default(),
+            isostasy: params
+                .isostasy
+                .map(|floats| Isostasy::new(&state.world.tin, &floats)),
+            base: Vec::new(),
             erosion: Erosion::new(&state.world.tin),
             before: Vec::new(),
+            before_crust: Crust::new(0),
+            before_sediment: Sediment::default(),
             wear: Wear::default(),
             land_revision: 0,
             queue: VecDeque::new(),

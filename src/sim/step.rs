@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use super::drive::Uplift;
+use super::exposure::Exposure;
+use super::folding::{Folding, LayerSkeleton};
 use super::history::History;
 use super::resume::Checkpoint;
 use super::rollback::Rollback;
@@ -12,9 +14,13 @@ use super::{SimParams, TICK_US, World};
 use crate::gesture::contact::{ContactKey, InputFrame, Side};
 use crate::gesture::event::{HandEvent, Leg};
 use crate::gesture::hand::{ContactStats, HandTracker};
+use crate::isostasy::{Crust, Isostasy};
+use crate::mountain::fold::FoldDrive;
+use crate::mountain::strata::NodeFolds;
 use crate::mountain::tectonics::TectonicReport;
 use crate::mountain::{PlateSet, TectonicField, Tectonics};
-use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets};
+use crate::surface::Cut;
+use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets, Sediment};
 
 /// Numbers that were none, and what became of them. They never reach the land.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,12 +86,16 @@ pub(super) struct State {
     /// The contact whose edits the newest snapshot was taken for.
     pub(super) edited_by: Option<u64>,
     pub(super) history: History,
+    /// Cross-sections, by [`Side`].
+    pub(super) cuts: [Option<Cut>; 2],
     /// The uplift that each unfinished push found.
     pub(super) found: BTreeMap<Leg, Arc<Uplift>>,
     pub(super) counts: SessionCounts,
     pub(super) quarantine: Quarantine,
     /// Figures of the last uplift that plates drove.
     pub(super) last_motion: Option<TectonicReport>,
+    /// What made layers fold at that time.
+    pub(super) last_folding: Option<Arc<FoldDrive>>,
 }
 
 /// A session: the world and all that moves it.
@@ -105,11 +115,23 @@ pub struct Sim {
     pub(super) field_of: Option<(PlateSet, f64)>,
     /// Uplift of `field` at each node, m/yr; not yet looked through for numbers that are none.
     pub(super) rates: Vec<f64>,
+    /// The same for folds.
+    pub(super) fold_rates: Vec<NodeFolds>,
+    /// The crests that go with them.
+    pub(super) skeletons: Vec<LayerSkeleton>,
+    pub(super) folding: Folding,
     /// `rates` are newer than the uplift that the land has felt.
     pub(super) ahead: bool,
+    /// The rock at the surface, as the last step found it.
+    pub(super) exposure: Exposure,
+    pub(super) isostasy: Option<Isostasy>,
+    /// Rise of the pile as a whole in the last step, m/yr.
+    pub(super) base: Vec<f64>,
     pub(super) erosion: Erosion,
-    /// The land before the step, for the quarantine.
+    /// The land and its crust before the step, for the quarantine.
     pub(super) before: Vec<f64>,
+    pub(super) before_crust: Crust,
+    pub(super) before_sediment: Sediment,
     pub(super) wear: Wear,
     pub(super) land_revision: u64,
 }
@@ -130,10 +152,12 @@ impl Sim {
             undo: Vec::new(),
             edited_by: None,
             history: History::default(),
+            cuts: [None, None],
             found: BTreeMap::new(),
             counts: SessionCounts::default(),
             quarantine: Quarantine::default(),
             last_motion: None,
+            last_folding: None,
             world,
         };
         state.history.record(&state.world, params.history_bytes);
@@ -150,7 +174,7 @@ impl Sim {
         &self.params
     }
 
-    /// Uplift rate at each node as the last step used it, m/yr.
+    /// Uplift rate of the crust at each node as the last step used it, m/yr, without folds.
     pub fn node_uplift(&self) -> &[f64] {
         &self.state.uplift.at_nodes
     }
@@ -342,28 +366,69 @@ impl Sim {
         let world = &mut state.world;
         let dt_yr = self.params.erosion_dt_yr;
         self.before.clone_from(&world.z);
-        let uplift = &state.uplift.at_nodes;
-        let sums = self.erosion.step(
+        self.before_crust.clone_from(&world.crust);
+        self.before_sediment.clone_from(&world.sediment);
+        let uplift = &state.uplift;
+        let edited = world.strata.pay(dt_yr);
+        let folds: Vec<&NodeFolds> = uplift.folds.iter().chain(&edited).collect();
+        self.base.clone_from(&uplift.at_nodes);
+        if let (Some(isostasy), Some(params)) = (&mut self.isostasy, &self.params.isostasy) {
+            isostasy.uplift(&mut world.crust, &uplift.at_nodes, params, dt_yr, &mut self.base);
+        }
+        if self.params.erosion.edges == Edges::Fixed {
+            // No plate raises the border, but it sinks with the crust beyond it.
+            let border = world
+                .tin
+                .border()
+                .iter()
+                .enumerate()
+                .filter(|(_, border)| **border);
+            for (i, _) in border {
+                let boost = self.params.isostasy.map_or(1.0, |floats| floats.boost);
+                self.base[i] -= boost * uplift.at_nodes[i];
+                let sunk = self.base[i] * dt_yr;
+                world.z[i] += sunk;
+                world.totals.uplifted_m3 += world.tin.areas()[i] * sunk;
+            }
+        }
+        self.exposure.read(world, &self.base, &folds);
+        let rise = &self.exposure.rise;
+        let forcing = Forcing {
+            erodibility: Some(&self.exposure.erodibility),
+            talus: Some(&self.exposure.talus),
+            ..Forcing::uplift(rise)
+        };
+        let sums = self.erosion.step_with_sediment(
             &world.tin,
             &mut world.z,
-            &Forcing::uplift(uplift),
+            &mut world.sediment,
+            &forcing,
             &self.params.erosion,
             dt_yr,
         );
         world.time_yr += dt_yr;
         if world.z.iter().any(|z| !z.is_finite()) {
             world.z.clone_from(&self.before);
+            world.crust.clone_from(&self.before_crust);
+            world.sediment.clone_from(&self.before_sediment);
             self.wear.forget();
             state.quarantine.steps += 1;
             return;
         }
-        self.wear.learn(&self.before, &world.z, uplift, dt_yr);
-        if world.strata.advance(&[uplift], dt_yr).is_err() {
-            state.quarantine.steps += 1;
+        self.wear.learn(&self.before, &world.z, rise, dt_yr);
+        for folds in [&uplift.folds, &edited] {
+            world.strata.advance(|_| 0.0, folds, dt_yr);
+        }
+        world.strata.advance(|i| self.base[i], &[], dt_yr);
+        if self.isostasy.is_some() {
+            // Folds bring rock that the thickening does not count.
+            world.crust.book(&self.before, &world.z, &self.base, dt_yr);
         }
         world.totals.steps += 1;
         world.totals.uplifted_m3 += sums.uplifted_m3;
         world.totals.eroded_m3 += sums.fluvial_m3 + sums.landslide_m3;
+        world.totals.deposited_m3 += sums.deposited_m3;
+        world.totals.exported_m3 += sums.exported_m3;
         self.keep_history();
     }
 }

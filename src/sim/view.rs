@@ -1,10 +1,16 @@
 //! What eyes and reports may ask of a session.
 
+use super::Cut;
+use super::exposure::Exposure;
+use super::folding::FoldingLayer;
 use super::step::Sim;
 use crate::gesture::contact::Side;
 use crate::gesture::hand::HandView;
+use crate::mountain::fold::{FoldStats, lines};
+use crate::mountain::strata::NodeFolds;
 use crate::mountain::{self, Plate};
-use crate::surface::{FaultTrace, PlateMark, PlateState};
+use crate::surface::{FaultTrace, FoldLine, PlateMark, PlateState};
+use crate::survey::Underground;
 use crate::terrain::Edges;
 use crate::units::KM;
 
@@ -74,6 +80,58 @@ impl Sim {
         self.state.pending_yr
     }
 
+    /// Figures of the folds at the last moment when a plate moved, pair by pair.
+    pub fn fold_stats(&self) -> Vec<(FoldingLayer, FoldStats)> {
+        let Some(drive) = &self.state.last_folding else {
+            return Vec::new();
+        };
+        let of = |layer: FoldingLayer| {
+            let mut known = self.world().skeletons.iter();
+            let known = known.find(|known| known.interface == layer.interface)?;
+            Some((layer, FoldStats::of(&known.mesh, &known.skeleton, drive)))
+        };
+        self.folding_layers().into_iter().filter_map(of).collect()
+    }
+
+    /// Crests and troughs of the folds of the `most` pairs of layers that fold in the longest waves.
+    pub fn fold_lines(&self, most: usize) -> Vec<FoldLine> {
+        let mut marks = Vec::new();
+        for layer in self.world().skeletons.iter().take(most) {
+            let crests = lines::top_lines(&layer.mesh, &layer.skeleton);
+            let troughs = lines::bottom_lines(&layer.mesh, &layer.skeleton);
+            for (lines, crest) in [(crests, true), (troughs, false)] {
+                marks.extend(lines.into_iter().map(|points| FoldLine {
+                    points,
+                    crest,
+                    layer: layer.interface - 1,
+                    wavelength_m: layer.mesh.wavelength(),
+                }));
+            }
+        }
+        marks
+    }
+
+    /// The layers under the land, node by node.
+    pub fn underground(&self) -> Underground<'_> {
+        let world = self.world();
+        Underground {
+            stratigraphy: &world.stratigraphy,
+            base: world.strata.base(),
+            folds: world
+                .strata
+                .folds()
+                .map(|fold| (fold.interface, fold.raised.as_slice()))
+                .collect(),
+            sediment: &world.sediment.thickness,
+            root: &world.crust.root,
+        }
+    }
+
+    /// The cross-section that a side of the table looks at.
+    pub fn cut(&self, side: Side) -> Option<&Cut> {
+        self.state.cuts[side as usize].as_ref()
+    }
+
     /// Rises whenever the heights at the nodes have changed.
     pub fn land_revision(&self) -> u64 {
         self.land_revision
@@ -83,27 +141,37 @@ impl Sim {
     /// erosion has taken of late. Heights plus this times [`Self::pending_yr`] are the land at this moment, between two
     /// steps.
     pub fn rise_into(&self, rise: &mut Vec<f64>) {
-        let uplift = if self.ahead {
-            &self.rates
-        } else {
-            &self.state.uplift.at_nodes
+        let mut exposure = Exposure {
+            rise: std::mem::take(rise),
+            ..Exposure::default()
         };
+        let uplift = &self.state.uplift;
+        let (base, folds) = if self.ahead {
+            (&self.rates, &self.fold_rates)
+        } else {
+            (&uplift.at_nodes, &uplift.folds)
+        };
+        let folds: Vec<&NodeFolds> = folds.iter().collect();
+        // The plate bends slowly: it sinks on as it did in the last step.
+        let mut floating = base.clone();
+        if let Some(params) = &self.params.isostasy
+            && self.base.len() == base.len()
+        {
+            for ((rate, at_last), felt) in floating.iter_mut().zip(&self.base).zip(&uplift.at_nodes) {
+                *rate = params.boost * (*rate - felt) + at_last;
+            }
+        }
+        exposure.read(self.world(), &floating, &folds);
+        *rise = exposure.rise;
         let fixed = self.params.erosion.edges == Edges::Fixed;
         let border = self.world().tin.border();
-        rise.clear();
-        rise.extend(
-            uplift
-                .iter()
-                .zip(border)
-                .enumerate()
-                .map(|(i, (&rate, &border))| {
-                    if rate.is_finite() && !(fixed && border) {
-                        rate - self.wear.at(i)
-                    } else {
-                        0.0
-                    }
-                }),
-        );
+        for (i, (rate, &border)) in rise.iter_mut().zip(border).enumerate() {
+            *rate = if rate.is_finite() && !(fixed && border) {
+                *rate - self.wear.at(i)
+            } else {
+                0.0
+            };
+        }
     }
 
     /// Speed of the fastest plate that pushes, against the ground, m/yr: the way of its middle over the length of a

@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 
+use super::folding::LayerSkeleton;
+use crate::isostasy::Crust;
 use crate::mountain::PlateSet;
+use crate::mountain::fold::FoldEdit;
 use crate::mountain::strata::Strata;
-use crate::terrain::{StartLand, Tin, TinError, resample};
+use crate::rock::{Stratigraphy, preset};
+use crate::terrain::{Sediment, StartLand, Tin, TinError, resample};
 use crate::units::PlanMap;
 
 /// Everything that the land is at one moment. Parameters and scratch memory live elsewhere, so a snapshot is a clone.
@@ -20,8 +24,18 @@ pub struct World {
     pub time_yr: f64,
     /// Land surface at each node, metres.
     pub z: Vec<f64>,
-    /// Displacement of each stratigraphic interface at each node.
+    /// The layers of rock as they were laid down.
+    pub stratigraphy: Arc<Stratigraphy>,
+    /// How far they have been moved at each node.
     pub strata: Strata,
+    /// Crests of the folds, as the land last felt them.
+    pub skeletons: Vec<LayerSkeleton>,
+    /// What visitors have changed about folds.
+    pub fold_edits: Vec<FoldEdit>,
+    /// Loose sediment on the rock.
+    pub sediment: Sediment,
+    /// How the crust floats.
+    pub crust: Crust,
     /// The plates, and what is left of their pushes.
     pub plates: PlateSet,
     /// When the last push began or changed, years; the world runs on from there.
@@ -37,30 +51,46 @@ pub struct Totals {
     pub uplifted_m3: f64,
     /// Taken away by rivers and landslides.
     pub eroded_m3: f64,
+    /// Laid down by rivers and in lakes.
+    pub deposited_m3: f64,
+    /// Carried off the land as sediment.
+    pub exported_m3: f64,
     /// Erosion steps.
     pub steps: u64,
 }
 
 impl World {
-    /// The land before anybody touched it: 1 m noise on smooth ±150 m hills.
+    /// The land before anybody touched it: 1 m noise on smooth ±150 m hills, over the default pile of rock.
     ///
     /// # Errors
     /// When that many nodes cannot be laid out.
     pub fn new(map: PlanMap, nodes: usize, seed: u64) -> Result<Self, TinError> {
         let tin = Arc::new(Tin::poisson(map.extent(), nodes, seed)?);
         let z = StartLand::new(seed).heights(&tin);
-        let strata = Strata::new(&[0.0], tin.len());
+        let nodes_laid = tin.len();
+        let strata = Strata::new(nodes_laid);
         Ok(Self {
             seed,
             map,
             tin,
             time_yr: 0.0,
             z,
+            stratigraphy: preset::default(),
             strata,
+            skeletons: Vec::new(),
+            fold_edits: Vec::new(),
+            sediment: Sediment::new(nodes_laid),
+            crust: Crust::new(nodes_laid),
             plates: PlateSet::default(),
             last_push_yr: 0.0,
             totals: Totals::default(),
         })
+    }
+
+    /// The same world over another pile of rock.
+    #[must_use]
+    pub fn with_layers(self, stratigraphy: Arc<Stratigraphy>) -> Self {
+        Self { stratigraphy, ..self }
     }
 
     /// The same world on other nodes: heights and displacements are interpolated.
@@ -72,7 +102,12 @@ impl World {
             tin: from,
             time_yr,
             z,
+            stratigraphy,
             strata,
+            skeletons,
+            fold_edits,
+            sediment,
+            crust,
             plates,
             last_push_yr,
             totals,
@@ -81,9 +116,21 @@ impl World {
         strata.resample(|values| resample(from, &tin, values));
         Self {
             seed: *seed,
+            skeletons: skeletons.clone(),
+            fold_edits: fold_edits.clone(),
+            sediment: Sediment {
+                thickness: resample(from, &tin, &sediment.thickness),
+                // What waits on a slope is less than a step brings.
+                debris: vec![0.0; tin.len()],
+            },
+            crust: Crust {
+                root: resample(from, &tin, &crust.root),
+                unanswered: resample(from, &tin, &crust.unanswered),
+            },
             map: *map,
             time_yr: *time_yr,
             z: resample(from, &tin, z),
+            stratigraphy: Arc::clone(stratigraphy),
             strata,
             plates: plates.clone(),
             last_push_yr: *last_push_yr,
@@ -94,7 +141,7 @@ impl World {
 
     /// Memory that a snapshot of this world needs, bytes (the shared nodes not counted).
     pub fn snapshot_bytes(&self) -> usize {
-        size_of_val(self.z.as_slice()) * (1 + self.strata.interfaces())
+        5 * size_of_val(self.z.as_slice()) + self.strata.bytes()
     }
 
     /// Memory of what is left of earlier pushes here and not in `before`, bytes: snapshots share the rest.

@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows how the land was made. Everything is in the plan frame (metres, x east, y north).
 
+mod cut;
 pub mod rivers;
 mod strata;
 
@@ -10,6 +11,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::units::Extent;
+pub use cut::Cut;
 pub use rivers::{River, RiverPoint};
 pub use strata::StrataMap;
 
@@ -124,10 +126,24 @@ pub struct Surface {
     pub plates: Vec<PlateMark>,
     /// Faults between plates.
     pub faults: Vec<FaultTrace>,
+    /// Crests and troughs of its folds.
+    pub folds: Vec<FoldLine>,
     /// The layers under it; `None` where nothing is known of them. Shared, because frames circulate.
     pub strata: Option<Arc<StrataMap>>,
     /// Model time since the land was new, years.
     pub elapsed_yr: f64,
+}
+
+impl Surface {
+    /// Height of the ground at a plan position, metres; 0 where the raster holds no number.
+    pub fn ground(&self, p: DVec2) -> f64 {
+        let height = self.height.sample(p);
+        if height.is_finite() {
+            f64::from(height)
+        } else {
+            0.0
+        }
+    }
 }
 
 /// One plate as the map shows it.
@@ -163,6 +179,24 @@ pub struct FaultTrace {
     pub points: Vec<DVec2>,
     /// Seen along the trace, the hanging wall (the range) is on the left; the teeth point there.
     pub range_on_left: bool,
+}
+
+impl FaultTrace {
+    /// Dip of a fault under its range, degrees: thrusts stand at a few tens of degrees where they crop out.
+    pub const DIP_DEG: f64 = 30.0;
+}
+
+/// The axis of a fold on the map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoldLine {
+    /// The axis, at least two points.
+    pub points: Vec<DVec2>,
+    /// True for a crest (an anticline), false for a trough (a syncline).
+    pub crest: bool,
+    /// The layer that folds, 0 the topmost.
+    pub layer: usize,
+    /// Wavelength of its folds, metres.
+    pub wavelength_m: f64,
 }
 
 #[cfg(test)]

@@ -44,6 +44,15 @@ impl StrataMap {
         )
     }
 
+    /// Depth before folding of the rock at a plan position where the ground is `ground` metres high, under any sediment:
+    /// metres, negative above the first surface. What maps, cliffs and slices show at a place is read from this, with
+    /// the ground of the same place, so that they agree between cells too. 0 where a raster holds no number.
+    pub fn exposed_depth(&self, p: DVec2, ground: f64) -> f64 {
+        let sediment = f64::from(self.sediment.sample(p).max(0.0));
+        let depth = self.column(p).depth_at(ground - sediment);
+        if depth.is_finite() { depth } else { 0.0 }
+    }
+
     /// The bed at the surface of a cell, under any sediment.
     pub fn outcrop(&self, cell: usize) -> Place {
         self.stratigraphy.place(f64::from(self.depth.data[cell]))

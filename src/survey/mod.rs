@@ -3,13 +3,22 @@
 //! A [`Survey`] locates the pixels over the nodes once and keeps its scratch memory, so that drawing the same land again
 //! after a step costs no large allocation.
 
+mod layers;
+
+use std::sync::Arc;
+
 use crate::surface::rivers::{self, FlowGraph};
 use crate::surface::{Raster, Surface};
 use crate::terrain::{Flow, NodeId, SmoothSheet, Tin, TinRaster};
 use crate::units::KM;
 
+pub use layers::Underground;
+
 /// Drainage area from which a stream is drawn on the map, m².
 const DRAWN_RIVER_AREA: f64 = 15.0 * KM * KM;
+
+/// Least greatest depth of a lake that is drawn, metres.
+const LEAST_LAKE: f64 = 8.0;
 
 /// A land on its nodes, and the water over it.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +37,8 @@ pub struct Water {
     receivers: Vec<u32>,
     lake_depth: Vec<f64>,
     lake: Vec<bool>,
+    /// Greatest depth of each water surface, metres.
+    deepest: Vec<f64>,
 }
 
 impl Water {
@@ -47,8 +58,31 @@ impl Water {
         self.lake_depth.clear();
         let depth = |(i, &z): (usize, &f64)| lakes.level(NodeId::new(i), z) - z;
         self.lake_depth.extend(z.iter().enumerate().map(depth));
+        self.drain_puddles(ground);
         self.lake.clear();
         self.lake.extend(self.lake_depth.iter().map(|&depth| depth > 0.0));
+    }
+
+    /// Water that is nowhere deeper than [`LEAST_LAKE`] is no lake: a growing plain is full of hollows.
+    fn drain_puddles(&mut self, ground: Ground<'_>) {
+        let Ground { tin, z, flow } = ground;
+        let lakes = flow.lakes();
+        let of = |i: usize| lakes.lake(NodeId::new(i), z[i]);
+        self.deepest.clear();
+        for i in 0..tin.len() {
+            if let Some(lake) = of(i) {
+                let lake = lake as usize;
+                if self.deepest.len() <= lake {
+                    self.deepest.resize(lake + 1, 0.0);
+                }
+                self.deepest[lake] = self.deepest[lake].max(self.lake_depth[i]);
+            }
+        }
+        for i in 0..tin.len() {
+            if of(i).is_some_and(|lake| self.deepest[lake as usize] < LEAST_LAKE) {
+                self.lake_depth[i] = 0.0;
+            }
+        }
     }
 
     /// The node each one drains to; an outlet drains to itself.
@@ -111,6 +145,7 @@ impl Survey {
             rivers: Vec::new(),
             plates: Vec::new(),
             faults: Vec::new(),
+            folds: Vec::new(),
             strata: None,
             elapsed_yr: 0.0,
         }
@@ -144,6 +179,17 @@ impl Survey {
                 *rivers = rivers::drawn(water.graph(ground), DRAWN_RIVER_AREA);
             },
         );
+    }
+
+    /// Draws the layers `under` the land that `out` shows into it. Memory that no other frame shares is used again.
+    pub fn draw_layers(&self, under: &Underground<'_>, out: &mut Surface) {
+        let mut map = out
+            .strata
+            .take()
+            .and_then(|shared| Arc::try_unwrap(shared).ok())
+            .unwrap_or_else(|| layers::blank(under.stratigraphy, &out.height));
+        layers::draw(&self.raster, under, &out.height, &mut map);
+        out.strata = Some(Arc::new(map));
     }
 
     /// The surface of `ground` at `elapsed_yr`, with nothing standing on it.

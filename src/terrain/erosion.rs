@@ -2,6 +2,7 @@
 
 use super::flow::{Flow, Outlets};
 use super::landslide::Landslides;
+use super::sediment::{Deposition, Moved, Rivers, Sediment, SharedStreamPower};
 use super::stream_power::{Network, StreamPower};
 use super::tin::{NodeId, Tin};
 
@@ -40,6 +41,9 @@ pub struct ErosionParams {
     /// cuts outlets down. Some: with fixed edges all border nodes are set to it; with free edges outlets above it
     /// incise towards it as if it lay one node spacing beyond the border.
     pub base_level: Option<f64>,
+    /// How rivers lay down what they carry, in steps that keep sediment. None: what is eroded leaves the land at once,
+    /// as in the paper. Some: n must be 1; with another n nothing is laid down.
+    pub deposition: Option<Deposition>,
 }
 
 impl Default for ErosionParams {
@@ -54,6 +58,7 @@ impl Default for ErosionParams {
             landslides: true,
             edges: Edges::Fixed,
             base_level: None,
+            deposition: None,
         }
     }
 }
@@ -61,7 +66,7 @@ impl Default for ErosionParams {
 /// Range of a parameter: validates settings and drives controls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
-    /// Field of [`ErosionParams`].
+    /// Field of [`ErosionParams`] or [`Deposition`].
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
@@ -91,7 +96,8 @@ impl ErosionParams {
         bound("landslide_rate", "m/yr", 0.0, 10.0),
     ];
 
-    /// Checks each parameter against its range; the base level against ±20 km.
+    /// Checks each parameter against its range; the base level against ±20 km; and n against 1 where there is
+    /// deposition.
     ///
     /// # Errors
     /// The first parameter outside its range (NaN is outside every range).
@@ -106,11 +112,20 @@ impl ErosionParams {
                 return Err(OutOfBounds { bound, found });
             }
         }
-        Ok(())
+        let Some(deposition) = self.deposition else {
+            return Ok(());
+        };
+        if self.n != 1.0 {
+            return Err(OutOfBounds {
+                bound: bound("n, with deposition,", "", 1.0, 1.0),
+                found: self.n,
+            });
+        }
+        deposition.check()
     }
 }
 
-const fn bound(name: &'static str, unit: &'static str, min: f64, max: f64) -> Bound {
+pub(super) const fn bound(name: &'static str, unit: &'static str, min: f64, max: f64) -> Bound {
     Bound { name, unit, min, max }
 }
 
@@ -154,12 +169,13 @@ impl<'a> Forcing<'a> {
     }
 
     /// The share of erosion that a node is exposed to.
-    fn exposure(&self, i: usize) -> f64 {
+    pub(super) fn exposure(&self, i: usize) -> f64 {
         self.protect.map_or(1.0, |protect| 1.0 - protect[i])
     }
 }
 
-/// What a step moved. Σ a (z′ − z) = uplifted − fluvial − landslide + base level, to round-off.
+/// What a step moved. To round-off, Σ a (z′ − z) = uplifted − fluvial − landslide + deposited + base level, and where
+/// sediment is kept, fluvial + landslide = deposited + exported + what the debris of [`Sediment`] has grown by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepSums {
     /// Volume raised by the uplift, m³ (fixed border nodes do not rise).
@@ -168,6 +184,10 @@ pub struct StepSums {
     pub fluvial_m3: f64,
     /// Volume fallen in landslides, m³.
     pub landslide_m3: f64,
+    /// Volume that rivers and lakes laid down, m³.
+    pub deposited_m3: f64,
+    /// Volume of sediment that left the land over the border, m³; 0 where no sediment is kept.
+    pub exported_m3: f64,
     /// Volume added where border nodes were set to the base level, m³.
     pub base_level_m3: f64,
     /// Separate water surfaces at the start of the step.
@@ -181,6 +201,7 @@ pub struct StepSums {
 pub struct Erosion {
     flow: Flow,
     landslides: Landslides,
+    rivers: SharedStreamPower,
     /// Height of the water surface after the step; in use only when there are lakes.
     water: Vec<f64>,
 }
@@ -191,12 +212,14 @@ impl Erosion {
         Self {
             flow: Flow::new(tin),
             landslides: Landslides::default(),
+            rivers: SharedStreamPower::default(),
             water: vec![0.0; tin.len()],
         }
     }
 
     /// One step of `dt_yr` years: routes water over `z` (m), then raises and incises it in one implicit solve
-    /// (Eq. 5), then lets steep slopes slide. The same bits for any number of threads.
+    /// (Eq. 5), then lets steep slopes slide. What is eroded leaves the land at once, whatever
+    /// [`ErosionParams::deposition`]. The same bits for any number of threads.
     ///
     /// Heights that are not finite spread, are counted in [`StepSums::not_finite`], and do no other harm.
     ///
@@ -210,6 +233,46 @@ impl Erosion {
         params: &ErosionParams,
         dt_yr: f64,
     ) -> StepSums {
+        self.advance(tin, z, None, forcing, params, dt_yr)
+    }
+
+    /// Like [`Self::step`], but what rivers and slides take is carried down the rivers, and laid down where they are
+    /// weak or end in a lake, as [`ErosionParams::deposition`] says. Without that law it is the same step to the bit,
+    /// and `sediment` is cleared.
+    ///
+    /// # Panics
+    /// If a slice does not hold one value per node of the TIN given to [`Self::new`].
+    pub fn step_with_sediment(
+        &mut self,
+        tin: &Tin,
+        z: &mut [f64],
+        sediment: &mut Sediment,
+        forcing: &Forcing<'_>,
+        params: &ErosionParams,
+        dt_yr: f64,
+    ) -> StepSums {
+        let fits = [&sediment.thickness, &sediment.debris];
+        assert!(
+            fits.iter().all(|values| values.len() == tin.len()),
+            "one value of sediment per node"
+        );
+        let law = params.deposition.filter(|_| params.n == 1.0);
+        if law.is_none() {
+            sediment.clear();
+        }
+        let kept = law.map(|deposition| (sediment, deposition));
+        self.advance(tin, z, kept, forcing, params, dt_yr)
+    }
+
+    fn advance(
+        &mut self,
+        tin: &Tin,
+        z: &mut [f64],
+        mut sediment: Option<(&mut Sediment, Deposition)>,
+        forcing: &Forcing<'_>,
+        params: &ErosionParams,
+        dt_yr: f64,
+    ) -> StepSums {
         forcing.check(tin.len());
         let fixed = params.edges == Edges::Fixed;
         let outlets = if fixed { Outlets::Border } else { Outlets::Lowest };
@@ -218,8 +281,30 @@ impl Erosion {
             lakes: self.flow.lakes().count(),
             ..StepSums::default()
         };
+        if sediment.is_some() && self.flow.lakes().any() {
+            for (node, (water, z)) in tin.nodes().zip(self.water.iter_mut().zip(&*z)) {
+                *water = self.flow.lakes().level(node, *z);
+            }
+        }
         self.move_outlets(tin, z, forcing, params, dt_yr, &mut sums);
-        self.incise(tin, z, forcing, params, dt_yr, &mut sums);
+        if let Some((sediment, deposition)) = &mut sediment {
+            // What outlets lose is over the border.
+            sums.exported_m3 = sums.fluvial_m3;
+            let rivers = Rivers {
+                network: network(&self.flow, tin),
+                lakes: self.flow.lakes(),
+                areas: tin.areas(),
+                forcing,
+                params,
+                deposition: *deposition,
+                dt_yr,
+            };
+            let water = self.flow.lakes().any().then_some(&self.water[..]);
+            let moved = self.rivers.step(&rivers, z, water, sediment);
+            sums.add(&moved);
+        } else {
+            self.incise(tin, z, forcing, params, dt_yr, &mut sums);
+        }
         if params.landslides {
             let areas = tin.areas();
             let talus = |i: usize| forcing.talus.map_or(params.talus, |talus| talus[i]);
@@ -231,7 +316,13 @@ impl Erosion {
                     params.landslide_rate * dt_yr * forcing.exposure(i)
                 }
             };
-            let slid = |i: usize, depth: f64| sums.landslide_m3 += areas[i] * depth;
+            let slid = |i: usize, below: usize, depth: f64| {
+                sums.landslide_m3 += areas[i] * depth;
+                if let Some((sediment, _)) = &mut sediment {
+                    sediment.cut(i, depth);
+                    sediment.debris[below] += areas[i] * depth;
+                }
+            };
             self.landslides.step(tin, z, talus, reach, slid);
         }
         self.settle_water(z);
@@ -289,12 +380,7 @@ impl Erosion {
         sums: &mut StepSums,
     ) {
         let areas = tin.areas();
-        let network = Network {
-            positions: tin.positions(),
-            receivers: self.flow.receivers(),
-            order: self.flow.order(),
-            drainage: self.flow.drainage(),
-        };
+        let network = network(&self.flow, tin);
         let rise = |i: usize| dt_yr * forcing.uplift[i];
         let risen = tin.nodes().filter(|&node| self.flow.receiver(node).is_some());
         sums.uplifted_m3 += risen
@@ -345,6 +431,25 @@ impl Erosion {
     /// node is dry.
     pub fn water_level<'a>(&'a self, z: &'a [f64]) -> &'a [f64] {
         if self.flow.lakes().any() { &self.water } else { z }
+    }
+}
+
+impl StepSums {
+    fn add(&mut self, moved: &Moved) {
+        self.uplifted_m3 += moved.uplifted;
+        self.fluvial_m3 += moved.eroded;
+        self.deposited_m3 += moved.deposited;
+        self.exported_m3 += moved.exported;
+    }
+}
+
+/// The rivers of a flow.
+fn network<'a>(flow: &'a Flow, tin: &'a Tin) -> Network<'a> {
+    Network {
+        positions: tin.positions(),
+        receivers: flow.receivers(),
+        order: flow.order(),
+        drainage: flow.drainage(),
     }
 }
 

@@ -126,6 +126,17 @@ impl Lakes {
         self.wet.iter().filter(|&&wet| wet).count()
     }
 
+    /// Number of water surfaces, with those that have no depth: [`Self::lake`] is below it.
+    pub(super) fn surfaces(&self) -> usize {
+        self.wet.len()
+    }
+
+    /// The water surface in whose closed basin a node lies, dry or not; none outside.
+    pub(super) fn surface_of(&self, node: NodeId) -> Option<u32> {
+        let &basin = self.basin.get(node.index())?;
+        (basin != OUTSIDE).then(|| self.lake[basin as usize])
+    }
+
     /// The level to which water stands at a node whose height was `z` when routed: `z` itself where it is dry.
     pub fn level(&self, node: NodeId, z: f64) -> f64 {
         match self.basin.get(node.index()) {

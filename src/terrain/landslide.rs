@@ -25,7 +25,8 @@ pub struct Landslides {
 }
 
 impl Landslides {
-    /// Lets slopes of `z` fall for one step and calls `slid` with each moved node and its loss of height (m).
+    /// Lets slopes of `z` fall for one step and calls `slid` with each moved node, the node it slid towards, and its
+    /// loss of height (m).
     ///
     /// `talus` is tan θ of a node; `reach` its l Δt in metres (0 and negative: the node stands).
     pub fn step(
@@ -34,7 +35,7 @@ impl Landslides {
         z: &mut [f64],
         talus: impl Fn(usize) -> f64 + Sync,
         reach: impl Fn(usize) -> f64 + Sync,
-        mut slid: impl FnMut(usize, f64),
+        mut slid: impl FnMut(usize, usize, f64),
     ) {
         let heights = &*z;
         self.towards.resize(tin.len(), STABLE);
@@ -65,7 +66,7 @@ impl Landslides {
                 if excess > 0.0 {
                     let left = excess / (1.0 + reach(i) / distance);
                     z[i] = stable_height + left;
-                    slid(i, excess - left);
+                    slid(i, below.index(), excess - left);
                 }
             }
         }

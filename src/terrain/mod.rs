@@ -1,7 +1,8 @@
 //! The land: a triangulated irregular network whose heights rise with the uplift and erode under rivers and slides.
 //!
 //! Everything here is written on nodes and their neighbours. [`Tin`] holds those; [`Flow`] routes water, through
-//! [`Lakes`] where there are pits; [`StreamPower`] incises, [`Landslides`] slide; [`Erosion`] makes a step of all three.
+//! [`Lakes`] where there are pits; [`StreamPower`] incises, [`Landslides`] slide; [`Erosion`] makes a step of all three,
+//! and keeps what they take as [`Sediment`] where a [`Deposition`] law says so.
 //! [`StartLand`] is the land before the first step, [`TinRaster`] turns nodes into pixels.
 
 mod basin_graph;
@@ -13,6 +14,7 @@ mod priority_flood;
 mod raster;
 mod resample;
 mod sampling;
+mod sediment;
 mod smooth;
 mod start;
 mod stream_power;
@@ -26,6 +28,7 @@ pub use landslide::Landslides;
 pub use priority_flood::priority_flood;
 pub use raster::TinRaster;
 pub use resample::resample;
+pub use sediment::{Deposition, Sediment};
 pub use smooth::SmoothSheet;
 pub use start::StartLand;
 pub use stream_power::{Network, StreamPower};

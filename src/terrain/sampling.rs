@@ -65,6 +65,26 @@ pub(super) fn poisson_disc(extent: Extent, nodes: usize, seed: u64) -> Samples {
     }
 }
 
+/// Poisson-disc samples of `extent` that leave no room for another: no two are nearer than `radius` metres, and no place
+/// is farther than that from all. Border nodes as in [`poisson_disc`].
+pub(super) fn saturated(extent: Extent, radius: f64, seed: u64) -> Samples {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let border = border_nodes(extent, radius, usize::MAX, &mut rng);
+    let count = border.len();
+    let mut throw = DartBoard::new(extent, radius, border);
+    throw.fill(usize::MAX, &mut rng);
+    Samples {
+        positions: throw.positions,
+        border: count,
+    }
+}
+
+/// How many samples [`saturated`] has room for at most: discs of half the radius, packed as tightly as they go, on the
+/// rectangle grown by half a radius.
+pub(super) fn saturated_at_most(extent: Extent, radius: f64) -> f64 {
+    (extent.width + radius) * (extent.height + radius) / (radius * radius * 3.0_f64.sqrt() / 2.0)
+}
+
 /// The disc radius at which about `nodes` samples nearly saturate `extent`.
 fn disc_radius(extent: Extent, nodes: usize) -> f64 {
     let expected = |r: f64| {

@@ -4,7 +4,7 @@ use glam::DVec2;
 use spade::handles::FixedVertexHandle;
 use spade::{DelaunayTriangulation, InsertionError, Point2, Triangulation};
 
-use super::sampling::{hilbert_order, poisson_disc};
+use super::sampling::{Samples, hilbert_order, poisson_disc, saturated, saturated_at_most};
 use super::voronoi::cell_areas;
 use crate::units::Extent;
 
@@ -158,11 +158,38 @@ impl Tin {
         if nodes > MAX_NODES {
             return Err(TinError::TooManyNodes { found: nodes });
         }
-        let samples = poisson_disc(extent, nodes, seed);
+        Self::of_samples(extent, &poisson_disc(extent, nodes, seed))
+    }
+
+    /// A TIN of Poisson-disc samples of `extent` that leave no room for another: nodes are at least `radius` metres
+    /// apart, and no place is farther than that from all of them, so that no triangle has a side above two radii. The
+    /// border is sampled as in [`Tin::poisson`].
+    ///
+    /// # Errors
+    /// [`TinError`] when the extent is no rectangle, or `radius` so small that more than [`MAX_NODES`] might fit.
+    pub fn saturated(extent: Extent, radius: f64, seed: u64) -> Result<Self, TinError> {
+        check_extent(extent)?;
+        // No disc is larger than the land; NaN and what is not above zero leave room for endless many.
+        let radius = radius.min(extent.width).min(extent.height);
+        let found = if radius > 0.0 {
+            saturated_at_most(extent, radius)
+        } else {
+            f64::INFINITY
+        };
+        if found > MAX_NODES as f64 {
+            return Err(TinError::TooManyNodes {
+                found: found as usize,
+            });
+        }
+        Self::of_samples(extent, &saturated(extent, radius, seed))
+    }
+
+    /// Numbers samples along a Hilbert curve and triangulates them.
+    fn of_samples(extent: Extent, samples: &Samples) -> Result<Self, TinError> {
         let order = hilbert_order(extent, &samples.positions);
         let positions: Vec<DVec2> = order.iter().map(|&k| samples.positions[k as usize]).collect();
         let border = order.iter().map(|&k| (k as usize) < samples.border).collect();
-        let along_curve: Vec<u32> = (0..nodes as u32).collect();
+        let along_curve: Vec<u32> = (0..positions.len() as u32).collect();
         Self::triangulate(extent, positions, Some(border), &along_curve)
     }
 

@@ -66,7 +66,11 @@ impl<'a> Control<'a> {
         };
         let enabled = if view.enabled { 1.0 } else { 0.34 };
         // Only switches of which "on" is the unusual state are lit for it.
-        let lit = view.on && matches!(view.kind, ControlKind::Tool | ControlKind::Readouts);
+        let lit = view.on
+            && matches!(
+                view.kind,
+                ControlKind::Tool(_) | ControlKind::Readouts | ControlKind::FreezeSlice
+            );
         let colour = if lit || view.pressed {
             AMBER
         } else {

@@ -203,7 +203,7 @@ fn manner(route: Route) -> Manner {
     match route {
         Route::Land => Manner::Touching,
         Route::Control => Manner::Control,
-        Route::Edit => Manner::Edit,
+        Route::Tool => Manner::Edit,
         Route::Wake => Manner::Wake,
         Route::Panel | Route::Corner => Manner::Faint,
         Route::Ignored => Manner::Stray,

@@ -6,6 +6,7 @@ use egui::emath::Rot2;
 use egui::{Color32, Pos2, vec2};
 
 use super::pen::{Line, Pen, arc};
+use crate::gesture::command::Tool;
 use crate::instrument::ControlKind;
 
 /// A square in which an icon is drawn.
@@ -63,7 +64,9 @@ impl Glyph<'_> {
 /// The icon of a control; `on` and `value` as in its view.
 pub(super) fn control(glyph: Glyph<'_>, kind: ControlKind, on: bool, value: f64) {
     match kind {
-        ControlKind::Tool => edit(glyph),
+        ControlKind::Tool(Tool::Fold) => folds(glyph),
+        ControlKind::Tool(Tool::Slice) => slice(glyph),
+        ControlKind::Tool(Tool::Edit | Tool::Push | Tool::View) => edit(glyph),
         ControlKind::Undo => undo(glyph),
         ControlKind::PlayPause if on => {
             for x in [-0.42, 0.18] {
@@ -77,6 +80,11 @@ pub(super) fn control(glyph: Glyph<'_>, kind: ControlKind, on: bool, value: f64)
         ControlKind::StartOver => start_over(glyph),
         ControlKind::Readouts => figures(glyph),
         ControlKind::Save => save(glyph),
+        ControlKind::FreezeSlice => freeze(glyph),
+        ControlKind::CloseSlice => {
+            glyph.line(&[(-0.6, -0.6), (0.6, 0.6)], 1.0);
+            glyph.line(&[(-0.6, 0.6), (0.6, -0.6)], 1.0);
+        }
     }
 }
 
@@ -85,6 +93,51 @@ fn edit(glyph: Glyph<'_>) {
     glyph.line(&[(-0.85, 0.62), (0.16, -0.12)], 1.0);
     glyph.fill(&[(0.22, -0.17), (-0.2, -0.08), (0.05, 0.26)], 1.0);
     glyph.arc((0.5, -0.38), 0.36, 0.0, 2.0 * PI);
+}
+
+/// Two beds in folds.
+fn folds(glyph: Glyph<'_>) {
+    for (y, strength) in [(-0.3, 1.0), (0.3, 0.75)] {
+        let bed: Vec<(f32, f32)> = (0..=24)
+            .map(|i| i as f32 / 12.0 - 1.0)
+            .map(|x| (x, y - 0.34 * (x * 1.5 * PI).cos()))
+            .collect();
+        glyph.line(&bed, strength);
+    }
+}
+
+/// A mountain that is cut open, with the finger at either end of the cut.
+fn slice(glyph: Glyph<'_>) {
+    glyph.line(
+        &[
+            (-0.62, 0.06),
+            (-0.3, -0.16),
+            (0.06, -0.78),
+            (0.34, -0.3),
+            (0.62, -0.06),
+        ],
+        1.0,
+    );
+    glyph.line(&[(-0.62, 0.06), (-0.62, 0.78), (0.62, 0.78), (0.62, -0.06)], 1.0);
+    glyph.line(&[(-0.62, 0.5), (-0.1, 0.3), (0.2, 0.2), (0.62, 0.4)], 0.75);
+    for x in [-1.0, 1.0] {
+        glyph.fill(&[(x * 0.72, 0.78), (x, 0.6), (x, 0.96)], 1.0);
+    }
+}
+
+/// A flake of snow.
+fn freeze(glyph: Glyph<'_>) {
+    for turn in [0.0, PI / 3.0, 2.0 * PI / 3.0] {
+        let (y, x) = f32::sin_cos(turn + PI / 2.0);
+        glyph.line(&[(-0.85 * x, -0.85 * y), (0.85 * x, 0.85 * y)], 1.0);
+        for end in [-1.0, 1.0] {
+            let knot = (0.5 * end * x, 0.5 * end * y);
+            for side in [-1.0, 1.0] {
+                let (dy, dx) = f32::sin_cos(turn + PI / 2.0 + side * PI / 4.0);
+                glyph.line(&[knot, (knot.0 + 0.3 * end * dx, knot.1 + 0.3 * end * dy)], 0.9);
+            }
+        }
+    }
 }
 
 fn undo(glyph: Glyph<'_>) {

@@ -445,7 +445,7 @@ fn doing(pen: Pen<'_>, at: Pos2, edit: &EditView, strength: f32) {
 }
 
 /// A grip on the tip of an arrow; `near` (0 to 1) says how near a finger is.
-fn handle(pen: Pen<'_>, at: Pos2, near: f32, strength: f32) {
+pub(super) fn handle(pen: Pen<'_>, at: Pos2, near: f32, strength: f32) {
     let radius = 5.0 + 1.5 * near;
     pen.glow(
         at,

@@ -1,5 +1,5 @@
-//! Everything that lies on top of the land: ink, halos of fingers, controls, ghost hands, readouts, the warning
-//! before a reset, and the menu for staff.
+//! Everything that lies on top of the land: ink, halos of fingers, controls, cross-sections, ghost hands, readouts, the
+//! warning before a reset, and the menu for staff.
 //!
 //! All of it is drawn with egui's painter from plain data. Positions come in as table millimetres or plan metres and
 //! pass through a [`Sight`], which alone knows where they are on the screen. Time comes in as seconds of a clock that
@@ -11,14 +11,17 @@
 
 pub mod controls;
 mod ease;
+pub mod folds;
 pub mod ghost;
 pub mod halo;
 mod icons;
 pub mod ink;
+pub mod layers;
 mod lettering;
 pub mod palette;
 mod pen;
 pub mod readouts;
+pub mod section;
 mod sight;
 pub mod staff;
 pub mod warning;

@@ -1,5 +1,6 @@
 //! All words that a visitor may read: few, and in one place.
 
+use crate::gesture::command::Tool;
 use crate::instrument::ControlKind;
 
 /// Beside the hand that stays the count-down.
@@ -17,7 +18,7 @@ pub(super) const MY: &str = "My";
 /// The word beside a control.
 pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
     match (kind, on) {
-        (ControlKind::Tool, _) => "edit",
+        (ControlKind::Tool(tool), _) => tool_word(tool),
         (ControlKind::Undo, _) => "undo",
         (ControlKind::PlayPause, true) => "pause",
         (ControlKind::PlayPause, false) => "play",
@@ -26,5 +27,18 @@ pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
         (ControlKind::StartOver, _) => "reset",
         (ControlKind::Readouts, _) => "figures",
         (ControlKind::Save, _) => "save",
+        (ControlKind::FreezeSlice, true) => "follow",
+        (ControlKind::FreezeSlice, false) => "freeze",
+        (ControlKind::CloseSlice, _) => "close",
+    }
+}
+
+fn tool_word(tool: Tool) -> &'static str {
+    match tool {
+        Tool::Push => "push",
+        Tool::Edit => "edit",
+        Tool::Fold => "folds",
+        Tool::Slice => "slice",
+        Tool::View => "view",
     }
 }

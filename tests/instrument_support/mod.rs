@@ -8,7 +8,7 @@ use orogen::gesture::params::GestureParams;
 use orogen::instrument::{ControlKind, ControlView, Instrument, InstrumentParams, Key, Route, Scene};
 use orogen::live::Clock;
 use orogen::settings::Corner;
-use orogen::surface::{FaultTrace, PlateMark};
+use orogen::surface::{Cut, FaultTrace, PlateMark};
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
 pub(crate) const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
@@ -21,6 +21,7 @@ pub(crate) fn params() -> InstrumentParams {
         size_mm: SIZE_MM,
         corner: Corner::NorthWest,
         unattended: false,
+        folds: true,
         readouts: false,
         gesture: GestureParams::default(),
     }
@@ -52,6 +53,7 @@ pub(crate) struct Set {
     pub(crate) clock: Clock,
     pub(crate) plates: Vec<PlateMark>,
     pub(crate) faults: Vec<FaultTrace>,
+    pub(crate) cuts: [Option<Cut>; 2],
     pub(crate) in_flight: bool,
     pub(crate) panels: Vec<(DVec2, DVec2)>,
     pub(crate) map: PlanMap,
@@ -62,6 +64,7 @@ impl Set {
         Scene {
             plates: &self.plates,
             faults: &self.faults,
+            cuts: &self.cuts,
             map: self.map,
             clock: &self.clock,
             in_flight: self.in_flight,
@@ -83,6 +86,7 @@ impl Table {
                 },
                 plates: Vec::new(),
                 faults: Vec::new(),
+                cuts: [None, None],
                 in_flight: false,
                 panels: Vec::new(),
                 map: PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE),

@@ -38,6 +38,7 @@ pub fn surface(width: usize, height: usize, summit: DVec2) -> Surface {
         rivers: Vec::new(),
         plates: Vec::new(),
         faults: Vec::new(),
+        folds: Vec::new(),
         strata: None,
         elapsed_yr: 5e6,
     }

@@ -261,6 +261,17 @@ impl Table {
         Land::read(&saved, (now.width, now.height))
     }
 
+    /// The first file of contacts that staff have saved.
+    pub fn saved_contacts(&mut self) -> Vec<u8> {
+        let saved = self.folder.join("orogen-out/contacts-001.gesture.jsonl");
+        let until = Instant::now() + Duration::from_secs_f64(SLOW_S);
+        while !saved.is_file() {
+            assert!(Instant::now() < until, "no {}", saved.display());
+            thread::sleep(Duration::from_millis(100));
+        }
+        fs::read(saved).unwrap()
+    }
+
     /// How the program ended.
     pub fn ended(&mut self, seconds: f64) -> ExitStatus {
         let until = Instant::now() + Duration::from_secs_f64(seconds);

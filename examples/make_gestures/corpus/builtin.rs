@@ -12,9 +12,9 @@ pub(super) const SCENES: [Scene; 1] = [("builtin_session", builtin_session)];
 /// nothing is worn down when the session is over. All of it stays 12 km clear of the border.
 fn builtin_session() -> Show {
     let mut show = Show::new(
-        "a grand range, a lower one, and a lake",
+        "a grand range, a lower one, and a filled rift",
         "A grand range strikes north-north-east at one third of the table, a lower one stands at an angle to it, \
-         and a lake lies in a small rift.",
+         and rivers have filled a small rift between two hills.",
     );
     show.world(5e6, 60_000);
     show.seed(11);

@@ -3,6 +3,7 @@
 mod builtin;
 mod expected;
 mod hand;
+mod ranges;
 mod show;
 mod trouble;
 mod visitors;
@@ -26,8 +27,9 @@ type Scene = (&'static str, fn() -> show::Show);
 
 /// All matters, in the order of the table.
 pub(crate) fn matters() -> Vec<Matter> {
-    let groups: [(&str, &[Scene]); 4] = [
+    let groups: [(&str, &[Scene]); 5] = [
         ("What hands are for", &expected::SCENES),
+        ("Ranges of the world", &ranges::SCENES),
         ("Visitors to whom nobody explained anything", &visitors::SCENES),
         ("Trouble with contacts", &trouble::SCENES),
         ("The show", &builtin::SCENES),

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
-use orogen::gesture::command::Mode;
-use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Source, quantise_mm};
+use orogen::gesture::command::{Action, Command, Mode};
+use orogen::gesture::contact::{
+    Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source, quantise_mm,
+};
 use orogen::gesture::file::{Expectation, GestureFile, Header, LandChange};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
@@ -124,6 +126,7 @@ pub(super) struct Show {
     seed: u64,
     expect: Expectation,
     fingers: Vec<Finger>,
+    commands: BTreeMap<u32, Vec<Command>>,
 }
 
 impl Show {
@@ -142,7 +145,17 @@ impl Show {
                 ..Expectation::default()
             },
             fingers: Vec::new(),
+            commands: BTreeMap::new(),
         }
+    }
+
+    /// A visitor at the southern side does something outside the contacts.
+    pub(super) fn command(&mut self, t_ms: f64, action: Action) {
+        let command = Command {
+            side: Some(Side::South),
+            ..Command::new(action)
+        };
+        self.commands.entry(frame_of(t_ms)).or_default().push(command);
     }
 
     /// Seed of land and tremor.
@@ -223,12 +236,16 @@ impl Show {
             *generation += 1;
             sample(finger, key, seed, place, &mut moments);
         }
+        let mut commands = self.commands;
+        for &frame in commands.keys() {
+            moments.entry(frame).or_default();
+        }
         let frames = moments.into_iter().map(|(frame, mut events)| {
             events.sort_by_key(|event| (event.phase.order(), event.contact.key));
             InputFrame {
                 t_us: u64::from(frame * FRAME_MS) * 1000,
                 events,
-                commands: Vec::new(),
+                commands: commands.remove(&frame).unwrap_or_default(),
             }
         });
         GestureFile {

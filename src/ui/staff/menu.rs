@@ -64,6 +64,7 @@ impl StaffPanel {
         let size = vec2(ui.available_width().min(470.0 * view.scale), 64.0 * view.scale);
         for (name, action) in [
             ("Save the land", StaffAction::SaveLand),
+            ("Layers of rock", StaffAction::Layers),
             ("Save the last 60 s of touches", StaffAction::SaveContacts),
             ("Clean the table: 30 s without touch", StaffAction::Clean),
         ] {
@@ -108,6 +109,7 @@ fn section_name(section: &'static str) -> &'static str {
     match section {
         "" => "World",
         "table" => "Table",
+        "land" => "Land",
         "kiosk" => "Visits",
         "staff" => "Staff",
         "quality" => "Quality",

@@ -9,7 +9,7 @@ mod editor;
 mod health;
 mod keypad;
 mod menu;
-mod style;
+pub(super) mod style;
 
 use egui::{Align2, Area, Context, Id, Order, Painter, Rect};
 use glam::DVec2;
@@ -25,7 +25,7 @@ pub use health::{ContactHealth, Health};
 pub use style::scale_for;
 
 /// Least side of anything that is pressed, points at scale 1.
-const TARGET: f32 = 48.0;
+pub(super) const TARGET: f32 = 48.0;
 
 /// What a member of staff has pressed.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,8 @@ pub enum StaffAction {
     Quit,
     /// The land starts afresh.
     RestartLand,
+    /// The panel of rock layers opens.
+    Layers,
     /// The contacts of the last 60 s are written to a gesture file.
     SaveContacts,
     /// The land is written to files.

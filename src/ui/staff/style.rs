@@ -28,12 +28,12 @@ pub fn scale_for(screen: Vec2, points_per_mm: f32) -> f32 {
 }
 
 /// A line or letter of less weight.
-pub(super) fn quiet() -> Color32 {
+pub(in crate::ui) fn quiet() -> Color32 {
     LAMP.gamma_multiply(0.62)
 }
 
 /// Dress of the panel.
-pub(super) fn panel(scale: f32) -> Frame {
+pub(in crate::ui) fn panel(scale: f32) -> Frame {
     Frame::new()
         .fill(ROOM.gamma_multiply(0.94))
         .stroke(Stroke::new(1.0, LAMP.gamma_multiply(0.18)))
@@ -42,7 +42,7 @@ pub(super) fn panel(scale: f32) -> Frame {
 }
 
 /// Dress of what is in it.
-pub(super) fn apply(ui: &mut Ui, scale: f32) {
+pub(in crate::ui) fn apply(ui: &mut Ui, scale: f32) {
     let style = ui.style_mut();
     let sizes = [
         (TextStyle::Small, 14.0),
@@ -89,6 +89,6 @@ pub(super) fn apply(ui: &mut Ui, scale: f32) {
 }
 
 /// A title.
-pub(super) fn heading(ui: &mut Ui, text: &str) {
+pub(in crate::ui) fn heading(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).heading().color(LAMP));
 }
