@@ -86,6 +86,8 @@ impl Sim {
         self.state.uplift = Arc::new(Uplift::still(&still, self.state.world.tin.len()));
         self.state.pending_yr = 0.0;
         self.state.stale = true;
+        // Its folds are others, whatever its plates.
+        self.field_of = None;
         self.wear.forget();
         self.land_revision += 1;
         self.keep_history();

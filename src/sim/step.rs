@@ -341,6 +341,7 @@ impl Sim {
         let counts = self.state.counts;
         self.state = state;
         self.ahead = false;
+        self.field_of = None;
         self.land_revision += 1;
         self.state.counts.rolled_back = counts.rolled_back + 1;
         for &key in &self.banned {
