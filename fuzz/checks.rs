@@ -8,6 +8,7 @@ use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
 use orogen::input::evemu::{EvemuOptions, import_evemu};
+use orogen::rock::Stratigraphy;
 use orogen::settings::Settings;
 
 /// Ticks of 16 ms that follow a frame, at most: enough for every timer of the hands to run out.
@@ -57,6 +58,19 @@ pub(crate) fn settings(bytes: &[u8]) {
             let again = Settings::parse(written.as_bytes(), "again").expect("what was written can be read");
             assert_eq!(again, settings);
             assert_eq!(again.to_toml(), written);
+        }
+        Err(error) => one_line(&error.to_string()),
+    }
+}
+
+/// The file of a pile of layers is refused in one line, or can be written and reads back equal.
+pub(crate) fn pile(bytes: &[u8]) {
+    match Stratigraphy::parse(bytes, "fuzz") {
+        Ok(pile) => {
+            let written = pile.to_toml();
+            let again =
+                Stratigraphy::parse(written.as_bytes(), "again").expect("what was written can be read");
+            assert_eq!(again, pile);
         }
         Err(error) => one_line(&error.to_string()),
     }

@@ -41,6 +41,11 @@ fn settings() {
     assert!(replay("settings", checks::settings) >= 2);
 }
 
+#[test]
+fn pile() {
+    assert!(replay("pile", checks::pile) >= 1);
+}
+
 /// Seeds that are refused at the first line would teach the fuzzer nothing.
 #[test]
 fn seeds_are_read() {
@@ -58,6 +63,8 @@ fn seeds_are_read() {
         let bytes = fs::read(seeds.join(format!("settings/{name}.toml"))).unwrap();
         Settings::parse(&bytes, name).unwrap();
     }
+    let bytes = fs::read(seeds.join("pile/digne.toml")).unwrap();
+    orogen::rock::Stratigraphy::parse(&bytes, "digne").unwrap();
     let options = EvemuOptions {
         range: None,
         size_mm: Some([100.0, 60.0].into()),

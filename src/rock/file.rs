@@ -156,7 +156,7 @@ fn read(bytes: &[u8]) -> Result<Stratigraphy, Fault> {
         .map_err(|error| (error.valid_up_to(), "expected UTF-8 text".to_owned()))?;
     let file: FileText = toml::from_str(text).map_err(|error| {
         let at = error.span().map_or(0, |span| span.start);
-        (at, error.message().to_owned())
+        (at, format!("expected a pile of layers: {}", error.message()))
     })?;
     if let Some(surplus) = file.layer.get(MAX_LAYERS) {
         return Err((
