@@ -158,6 +158,8 @@ impl Shown {
             .map_or(1.0, |slice| exaggeration(slice, subject.size));
         let figure = slice.as_ref().map(|slice| {
             let options = FigureOptions {
+                // It stands in the strip, in larger letters.
+                heading: false,
                 letter: letter(side),
                 exaggeration: Some(exaggeration),
                 crust: false,
@@ -172,10 +174,7 @@ impl Shown {
                     .collect(),
                 ..FigureOptions::default()
             };
-            let mut figure = slice.figure(subject.size, &options);
-            // Its heading stands in the strip, in larger letters.
-            figure.texts.retain(|text| !text.text.starts_with("Slice "));
-            figure
+            slice.figure(subject.size, &options)
         });
         let letter = letter(side);
         let facts = slice.as_ref().map(|slice| {

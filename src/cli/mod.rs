@@ -165,6 +165,12 @@ struct ReplayArgs {
     /// Also draw a picture every N erosion steps, into `frames/`.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     every: Option<u32>,
+    /// Whether the crust floats: it sinks under a range, and rises where it is eroded.
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    isostasy: Switch,
+    /// Whether rivers lay down what they carry.
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    deposition: Switch,
     /// Also draw a cross-section between two points of the plan, in km from the south-west corner (x east, y north), as
     /// slice.svg and slice.png; may be given several times.
     #[arg(long = "slice", value_name = "X0,Y0,X1,Y1", value_parser = parse_ends, allow_hyphen_values = true)]

@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings, draw_frame, land_of, write_json};
-use super::{Common, PictureChoice, ReplayArgs, on_threads, slice};
+use super::{Common, PictureChoice, ReplayArgs, Switch, on_threads, slice};
 use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
@@ -46,6 +46,8 @@ pub(super) fn builtin(console: Console) -> Result<(), Failure> {
         layers: preset::names()[0].to_owned(),
         paper: false,
         every: None,
+        isostasy: Switch::On,
+        deposition: Switch::On,
         slices: Vec::new(),
     };
     run(&args, console)
@@ -139,6 +141,12 @@ fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
     } else {
         SimParams::default()
     };
+    if args.isostasy == Switch::Off {
+        params.isostasy = None;
+    }
+    if args.deposition == Switch::Off {
+        params.erosion.deposition = None;
+    }
     if let Some(years) = args.years.or(header.years) {
         params.run_on_yr = years;
     }

@@ -11,9 +11,6 @@ use super::belt::Belt;
 use super::grid::{Field, Grid};
 use super::plate::Pair;
 
-/// Dip of the main thrust under the range, degrees (the paper prescribes none; a few tens of degrees are usual).
-pub const DIP_DEG: f64 = 30.0;
-
 /// Traces shorter than this (metres) are not drawn.
 const SHORTEST: f64 = 10_000.0;
 

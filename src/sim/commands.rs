@@ -215,6 +215,7 @@ impl Sim {
         world.stratigraphy = pile;
         world.strata.relay();
         world.skeletons.clear();
+        self.field_of = None;
         true
     }
 

@@ -9,6 +9,8 @@ use crate::rock::Colour;
 pub struct FigureOptions {
     /// First line; empty for none.
     pub title: String,
+    /// Whether title, length, age and exaggeration stand above the section.
+    pub heading: bool,
     /// Letter of the first end; the second has the same with a prime.
     pub letter: char,
     /// Heights are multiplied by this; `None` chooses 1, 1.5, 2, 3 or 5. Always printed.
@@ -27,6 +29,7 @@ impl Default for FigureOptions {
     fn default() -> Self {
         Self {
             title: String::new(),
+            heading: true,
             letter: 'A',
             exaggeration: None,
             depth: 9_000.0,

@@ -60,7 +60,10 @@ impl Slice {
             unit,
         };
         section.draw(&mut figure);
-        section.heading(options, &mut figure);
+        if options.heading {
+            section.heading(options, &mut figure);
+        }
+        section.ends(options, &mut figure);
         section.axes(&mut figure);
         section.labels(options, &mut figure);
         if names {
@@ -83,7 +86,7 @@ impl Slice {
 }
 
 impl Section<'_> {
-    /// Title and facts; the names of the ends over them.
+    /// Title and facts.
     fn heading(&self, options: &FigureOptions, figure: &mut Figure) {
         let left = self.panel.left;
         if !options.title.is_empty() {
@@ -105,6 +108,13 @@ impl Section<'_> {
         let at = DVec2::new(left, 66.0 * self.unit);
         let quiet = mixed(PAPER, INK, 0.8);
         self.write(figure, at, &facts, (16.0, Anchor::Start, quiet));
+    }
+
+    /// The names of the ends, over them.
+    fn ends(&self, options: &FigureOptions, figure: &mut Figure) {
+        let letter = options.letter;
+        let [from, to] = self.slice.compass();
+        let left = self.panel.left;
         let y = self.panel.top - 12.0 * self.unit;
         for (x, anchor, name) in [
             (left, Anchor::Start, format!("{letter}   {from}")),

@@ -254,6 +254,7 @@ fn editor(ui: &mut Ui, view: &LayersView<'_>, draft: &mut Draft) {
     let basement_pa_s = draft.basement.viscosity_pa_s;
     let Some(layer) = draft.layers.get_mut(draft.selected) else {
         ui.label("Only the basement: add a layer.");
+        pile_editor(ui, draft, view.scale);
         return;
     };
     Grid::new("layer")
@@ -301,6 +302,23 @@ fn editor(ui: &mut Ui, view: &LayersView<'_>, draft: &mut Draft) {
                 );
                 ui.end_row();
             }
+        });
+    pile_editor(ui, draft, view.scale);
+}
+
+/// What holds for the pile as a whole.
+fn pile_editor(ui: &mut Ui, draft: &mut Draft, scale: f32) {
+    Grid::new("pile")
+        .num_columns(2)
+        .min_row_height(0.8 * TARGET * scale)
+        .show(ui, |ui| {
+            number(
+                ui,
+                "Uplift of the pile",
+                &mut draft.basement.uplift,
+                bounds::UPLIFT,
+                2,
+            );
         });
 }
 
