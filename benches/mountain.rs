@@ -11,7 +11,7 @@ use orogen::mountain::fold::{FoldDrive, FoldMesh, FoldRates, FoldShape, Skeleton
 use orogen::mountain::transport::{
     CpuTransport, MovedBody, TransportField, TransportProblem, TransportStage,
 };
-use orogen::mountain::{Field, Grid, MountainParams, PlateSet, TectonicField, Tectonics};
+use orogen::mountain::{Grid, MountainParams, PlateSet, TectonicField, Tectonics};
 use orogen::units::{DEFAULT_SHORT_SIDE, Extent, KM, PlanMap};
 
 /// Five fingertips around a point, km.
@@ -143,9 +143,12 @@ fn folds(criterion: &mut Criterion) {
             share: 0.5,
             edits: &[],
         };
-        let mut field = Field::constant(grid.blocks(), 0.0);
-        criterion.bench_function(&format!("fold-rates/256x256/{wavelength}-km"), |b| {
-            b.iter(|| shape.rates_on_grid(&rates, grid.blocks(), &mut field));
+        let blocks = grid.blocks();
+        let centre = |at: usize| blocks.centre(at % blocks.cols, at / blocks.cols);
+        let points: Vec<DVec2> = (0..blocks.len()).map(centre).collect();
+        let mut at_points = Vec::new();
+        criterion.bench_function(&format!("fold-rates/65536-points/{wavelength}-km"), |b| {
+            b.iter(|| shape.rates_at_points(&rates, &points, &mut at_points));
         });
     }
 }

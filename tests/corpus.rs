@@ -266,3 +266,49 @@ fn a_range_reads_as_a_range() {
         range.mean_slope_deg
     );
 }
+
+/// Every pile makes a range that reads as one, gentler over soft rock: along its strike (degrees from north, at right
+/// angles to the motion), with two fronts. The measure finds no divide on the broad back of the Andes, where neighbouring
+/// streams leave close to each other; there only relief and slope are held.
+#[test]
+fn every_pile_makes_a_range_that_reads_as_one() {
+    let strikes = [
+        ("range_jura", Some(0.0)),
+        ("range_zagros", Some(90.0)),
+        ("range_andes", None),
+        // Half-way between the normals of the motion and of the line that joins the plates.
+        ("range_southern_alps", Some(24.0)),
+        ("range_digne", Some(0.0)),
+    ];
+    let wrong: Vec<String> = strikes
+        .par_iter()
+        .filter_map(|&(name, strike)| {
+            let (_, file) = files()
+                .into_iter()
+                .find(|(found, _)| found == name)
+                .expect("shipped");
+            let map = PlanMap::new(file.header.size_mm, DEFAULT_SHORT_SIDE);
+            let world = World::new(map, 30_000, file.header.seed.unwrap_or(1)).expect("a world");
+            let mut sim = Sim::new(world, SimParams::default());
+            for frame in &file.frames {
+                sim.feed(frame.clone());
+            }
+            while sim.input_waits() {
+                sim.tick();
+            }
+            sim.finish_input();
+            sim.run_on(|_, _| true);
+            let world = sim.world();
+            let range = RangeFacts::new(&world.tin, &world.z, &sim.flow(), world.strata.base());
+            let lies_along = strike.is_none_or(|strike: f64| {
+                let off = (range.divide_azimuth_deg - strike).rem_euclid(180.0);
+                off.min(180.0 - off) < 30.0 && range.front_drainage_fraction > 0.5
+            });
+            let reads = lies_along
+                && (1_000.0..3_300.0).contains(&range.relief_10km_m)
+                && (8.0..30.0).contains(&range.mean_slope_deg);
+            (!reads).then(|| format!("{name}: {range:?}"))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

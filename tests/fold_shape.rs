@@ -1,7 +1,10 @@
 //! Heights of folds against brute force, and edits of folds.
 
+mod fold_common;
+
 use std::f64::consts::PI;
 
+use fold_common::RATE;
 use glam::DVec2;
 use orogen::mountain::fold::lines::{top_lines, trough_node, troughs};
 use orogen::mountain::fold::shape::SHAPE_TOLERANCE;
@@ -17,14 +20,12 @@ const LAND: Extent = Extent {
     height: 60.0 * KM,
 };
 
-const RATE: f64 = 3e-4;
-
 fn blocks() -> Grid {
-    Grid::over(LAND, 512 * 512).blocks()
+    fold_common::blocks(LAND)
 }
 
 fn mesh(wavelength_km: f64, seed: u64) -> FoldMesh {
-    FoldMesh::new(LAND, wavelength_km * KM, seed).expect("a mesh")
+    fold_common::mesh(LAND, wavelength_km, seed)
 }
 
 /// Compression that turns slowly across the land.
@@ -375,23 +376,6 @@ fn rates_follow_drive_share_limit_and_hand() {
         raised_somewhere = raised_somewhere.max(edited[k] / low[k].max(1e-12));
     }
     assert!(raised_somewhere > 1.9);
-
-    let grid = Grid::over(LAND, 20_000);
-    let mut field = Field::constant(blocks(), 0.0);
-    shape.rates_on_grid(&rates(0.05, true), grid, &mut field);
-    assert_eq!(field.grid, grid);
-    let centres: Vec<DVec2> = (0..grid.len())
-        .map(|at| grid.centre(at % grid.cols, at / grid.cols))
-        .collect();
-    let mut exact = Vec::new();
-    shape.rates_at_points(&rates(0.05, true), &centres, &mut exact);
-    let worst = field
-        .data
-        .iter()
-        .zip(&exact)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f32::max);
-    assert!(f64::from(worst) < SHAPE_TOLERANCE * 2.0 * RATE);
 }
 
 #[test]
@@ -412,11 +396,11 @@ fn any_number_of_threads_gives_the_same_heights() {
                 share: 0.5,
                 edits: &edits,
             };
-            let mut field = Field::constant(blocks(), 0.0);
-            shape.rates_on_grid(&rates, Grid::over(LAND, 100_000), &mut field);
+            let mut heights = Vec::new();
+            shape.on_grid(Grid::over(LAND, 100_000), &mut heights);
             let mut points = Vec::new();
             shape.rates_at_points(&rates, &places(5_000), &mut points);
-            (skeleton, field, points)
+            (skeleton, heights, points)
         })
     });
     assert!(runs[0] == runs[1] && runs[0] == runs[2]);

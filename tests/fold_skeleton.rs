@@ -1,5 +1,8 @@
 //! Skeletons of folds against the figures of the literature and of independent sketches.
 
+mod fold_common;
+
+use fold_common::RATE;
 use glam::DVec2;
 use orogen::mountain::Grid;
 use orogen::mountain::fold::lines::{bottom_lines, top_lines, trough_node, troughs};
@@ -12,15 +15,12 @@ const LAND: Extent = Extent {
     height: 100.0 * KM,
 };
 
-const RATE: f64 = 3e-4;
-
-/// The coarse grid over the land.
 fn blocks() -> Grid {
-    Grid::over(LAND, 512 * 512).blocks()
+    fold_common::blocks(LAND)
 }
 
 fn mesh(wavelength_km: f64, seed: u64) -> FoldMesh {
-    FoldMesh::new(LAND, wavelength_km * KM, seed).expect("a mesh")
+    fold_common::mesh(LAND, wavelength_km, seed)
 }
 
 fn skeleton(mesh: &FoldMesh, azimuth: f64) -> (Skeleton, FoldDrive) {

@@ -6,6 +6,8 @@
 #![cfg(feature = "app")]
 #![expect(clippy::print_stderr, reason = "a test that is left out says so")]
 
+mod render_common;
+
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::DVec2;
@@ -15,6 +17,7 @@ use orogen::picture::{MapStyle, relief_map};
 use orogen::render::{Camera, Canvas, Focus, LandStyle, RenderQuality, flight, picture};
 use orogen::surface::{Raster, Surface};
 use orogen::units::{Extent, KM};
+use render_common::gpu;
 
 /// Small enough for a software adapter, large enough for mountains: 200 m a cell, 100 m a pixel.
 const LAND: Extent = Extent {
@@ -42,18 +45,6 @@ const SHADED: f64 = 8.0;
 const CARD_AND_MAP: f64 = 8.0;
 /// A projected place and what is drawn there, pixels: half a cell of the mesh, seen from near by.
 const PLACED: f64 = 4.0;
-
-fn gpu() -> Option<Gpu> {
-    match Gpu::offscreen() {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            let required = std::env::var_os("OROGEN_REQUIRE_GPU").is_some_and(|value| value == "1");
-            assert!(!required, "{error}");
-            eprintln!("skipped: {error}");
-            None
-        }
-    }
-}
 
 fn land(height: impl Fn(DVec2) -> f64, depth: impl Fn(DVec2) -> f64) -> Surface {
     let raster = |value: &dyn Fn(DVec2) -> f64| Raster::from_fn(CELLS.0, CELLS.1, LAND, |p| value(p) as f32);

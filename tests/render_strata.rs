@@ -6,6 +6,8 @@
 #![cfg(feature = "app")]
 #![expect(clippy::print_stderr, reason = "a test that is left out says so")]
 
+mod render_common;
+
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -15,6 +17,7 @@ use orogen::render::{Camera, Canvas, LandStyle, Oblique, RenderQuality, picture}
 use orogen::rock::{Basement, Layer, Rock, Stratigraphy};
 use orogen::surface::{Raster, StrataMap, Surface};
 use orogen::units::{Extent, KM};
+use render_common::gpu;
 
 /// 50 m a cell, 25 m a pixel.
 const LAND: Extent = Extent {
@@ -34,18 +37,6 @@ const BEDS: usize = 10;
 
 /// Two pictures of the same land may differ by the last step of a byte.
 const SAME: u8 = 1;
-
-fn gpu() -> Option<Gpu> {
-    match Gpu::offscreen() {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            let required = std::env::var_os("OROGEN_REQUIRE_GPU").is_some_and(|value| value == "1");
-            assert!(!required, "{error}");
-            eprintln!("skipped: {error}");
-            None
-        }
-    }
-}
 
 /// One layer whose beds differ so much.
 fn pile(contrast: f64) -> Arc<Stratigraphy> {

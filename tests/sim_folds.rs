@@ -176,3 +176,34 @@ fn another_pile_under_the_land_keeps_its_heights_and_can_be_undone() {
     order(&mut sim, Action::Layers("no such pile".to_owned()));
     assert_eq!(sim.counts().idle_commands, 1);
 }
+
+/// The new pile's own uplift and folds drive it from the next step on, while the push goes on.
+#[test]
+fn another_pile_under_a_push_is_driven_as_its_own_layers_are() {
+    let mut sim = played("range_jura");
+    run(&mut sim, 1e6);
+    let before = sim.node_uplift().iter().copied().fold(0.0, f64::max);
+    order(&mut sim, Action::Layers("southern_alps".to_owned()));
+    run(&mut sim, 1e5);
+    let after = sim.node_uplift().iter().copied().fold(0.0, f64::max);
+    // The one rises as a whole at 1.2 of the thickening, the other at 0.2.
+    assert!((after / before - 6.0).abs() < 0.5, "{before} and {after}");
+    assert_eq!(sim.world().strata.folds().count(), 0, "one schist does not fold");
+}
+
+/// What is missing between the first surface and the ground is what rivers and slides took and did not lay down.
+#[test]
+fn rock_that_is_gone_from_the_pile_is_what_erosion_took() {
+    let mut sim = played("range_southern_alps");
+    run(&mut sim, 2e6);
+    let world = sim.world();
+    let areas = world.tin.areas();
+    let start = orogen::terrain::StartLand::new(world.seed).heights(&world.tin);
+    let gone: f64 = (0..areas.len())
+        .map(|i| areas[i] * (world.strata.column(&world.stratigraphy, i).height(0) - (world.z[i] - start[i])))
+        .sum();
+    let totals = world.totals;
+    let taken = totals.eroded_m3 - totals.deposited_m3;
+    assert!(taken > 1e11, "a range was eroded: {taken} m³");
+    assert!((gone / taken - 1.0).abs() < 1e-6, "{gone} m³ of {taken} m³");
+}

@@ -3,8 +3,10 @@
 
 #![cfg(feature = "app")]
 
+mod ui_common;
+
 use egui::epaint::{ColorMode, PathShape};
-use egui::{Color32, Context, LayerId, Painter, Pos2, RawInput, Rect, Shape, pos2};
+use egui::{Color32, Shape};
 use glam::DVec2;
 use orogen::gesture::contact::Side;
 use orogen::instrument::{EditView, Editing};
@@ -14,28 +16,8 @@ use orogen::surface::{FaultTrace, PlateMark, PlateState};
 use orogen::ui::ink::Chart;
 use orogen::ui::readouts::{self, Readings};
 use orogen::ui::{Sight, ghost, palette, warning};
-use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
-
-const SCREEN: Rect = Rect::from_min_max(Pos2::ZERO, pos2(1920.0, 1080.0));
-
-fn map() -> PlanMap {
-    PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE)
-}
-
-/// All shapes that `draw` adds, one by one.
-fn shapes(draw: impl Fn(&Painter, &Sight<'_>)) -> Vec<Shape> {
-    let context = Context::default();
-    let input = RawInput {
-        screen_rect: Some(SCREEN),
-        ..RawInput::default()
-    };
-    let mut output = context.run_pass(input, |context| {
-        let painter = context.layer_painter(LayerId::background());
-        draw(&painter, &Sight::flat(map(), SCREEN));
-    });
-    output.textures_delta.clear();
-    output.shapes.into_iter().map(|clipped| clipped.shape).collect()
-}
+use orogen::units::KM;
+use ui_common::{SCREEN, map, shapes};
 
 fn plate(state: PlateState, spent: f64, cap: Option<f64>) -> PlateMark {
     let corner = |x: f64, y: f64| DVec2::new(x, y) * KM;

@@ -2,9 +2,11 @@
 
 #![cfg(feature = "app")]
 
+mod ui_common;
+
 use std::sync::Arc;
 
-use egui::{Context, LayerId, Painter, Pos2, RawInput, Rect, Shape, Vec2, pos2};
+use egui::{Pos2, Rect, Shape, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
@@ -16,29 +18,8 @@ use orogen::surface::{FoldLine, Raster, Surface};
 use orogen::ui::layers::{LayersAction, LayersPanel, LayersView};
 use orogen::ui::section::{self, NoteDraft, Sheet};
 use orogen::ui::{Sight, folds};
-use orogen::units::{DEFAULT_SHORT_SIDE, KM, PlanMap};
-
-const SCREEN: Rect = Rect::from_min_max(Pos2::ZERO, pos2(1920.0, 1080.0));
-const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
-
-fn map() -> PlanMap {
-    PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE)
-}
-
-/// All shapes that `draw` adds, one by one.
-fn shapes(draw: impl Fn(&Painter, &Sight<'_>)) -> Vec<Shape> {
-    let context = Context::default();
-    let input = RawInput {
-        screen_rect: Some(SCREEN),
-        ..RawInput::default()
-    };
-    let mut output = context.run_pass(input, |context| {
-        let painter = context.layer_painter(LayerId::background());
-        draw(&painter, &Sight::flat(map(), SCREEN));
-    });
-    output.textures_delta.clear();
-    output.shapes.into_iter().map(|clipped| clipped.shape).collect()
-}
+use orogen::units::KM;
+use ui_common::{SCREEN, SIZE_MM, map, shapes};
 
 fn paper(side: Side) -> Paper {
     let south = DVec2::new(250.0, 560.0);

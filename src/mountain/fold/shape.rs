@@ -21,7 +21,7 @@ use super::lines::{trough_node, troughs};
 use super::mesh::FoldMesh;
 use super::nearest::{Near, Segments};
 use super::skeleton::Skeleton;
-use crate::mountain::grid::{Field, Grid};
+use crate::mountain::grid::Grid;
 use crate::mountain::smoother;
 
 /// Distances to crests, in wavelengths, between which the shape fades out. Among compressed folds no place is as far from
@@ -146,22 +146,7 @@ impl FoldShape {
             });
     }
 
-    /// How fast the ground rises by folds at the cell centres of a grid, m/yr.
-    pub fn rates_on_grid(&self, rates: &FoldRates<'_>, grid: Grid, out: &mut Field) {
-        out.grid = grid;
-        self.on_grid(grid, &mut out.data);
-        let raises = Raises::of(rates.edits, self.wavelength);
-        out.data
-            .par_chunks_mut(grid.cols.max(1))
-            .enumerate()
-            .for_each(|(row, cells)| {
-                for (col, cell) in cells.iter_mut().enumerate().filter(|(_, cell)| **cell > 0.0) {
-                    *cell *= self.crest_rate(rates, &raises, grid.centre(col, row)) as f32;
-                }
-            });
-    }
-
-    /// The same at points; `out` gets one value per point.
+    /// How fast the ground rises by folds at points, m/yr; `out` gets one value per point.
     pub fn rates_at_points(&self, rates: &FoldRates<'_>, points: &[DVec2], out: &mut Vec<f32>) {
         let raises = Raises::of(rates.edits, self.wavelength);
         fill_points(points, out, |p| {
