@@ -9,6 +9,7 @@
 //! | module | what it does | what it must not know |
 //! |---|---|---|
 //! | [`units`] | frames and quantities; converts table mm ↔ plan m | anything |
+//! | [`sphere`] | samples on the sphere that never move, their neighbours, the nearest one | anything |
 //! | [`rock`] | layers of rock, their column at a place, named piles | anything |
 //! | [`gesture`] | contacts → strokes → hands → rigid fit; the gesture file | worlds, window, clock, files |
 //! | [`mountain`] | plates, transport, compression, fault, uplift, strata of the flat world | window, files, who owns it |
@@ -50,6 +51,8 @@
 //! * Another solver of the land works on [`terrain::Tin`] and [`terrain::Forcing`].
 
 pub mod units;
+
+pub mod sphere;
 
 pub mod rock;
 

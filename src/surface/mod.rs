@@ -3,6 +3,7 @@
 //! Nothing here knows how the land was made. Everything is in the plan frame (metres, x east, y north).
 
 mod cut;
+pub mod planet;
 pub mod rivers;
 mod strata;
 

@@ -1,0 +1,206 @@
+//! Fibonacci samples and their inverse.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat2, DVec2, DVec3};
+
+use super::mesh::Mesh;
+
+/// Least and greatest number of samples.
+pub const SAMPLES_RANGE: (usize, usize) = (1_000, 1_000_000);
+
+/// The golden ratio.
+const GOLDEN: f64 = 1.618_033_988_749_895;
+
+/// Why there is no lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LatticeError {
+    /// The number of samples is outside [`SAMPLES_RANGE`].
+    #[error("samples: expected {} to {}, found {found}", SAMPLES_RANGE.0, SAMPLES_RANGE.1)]
+    Size {
+        /// How many were asked for.
+        found: usize,
+    },
+    /// The triangulation did not close: an inner fault.
+    #[error("the triangulation of {0} samples does not close")]
+    Open(usize),
+}
+
+/// Nearly evenly spread samples on the unit sphere, their Delaunay triangulation and the inverse look-up.
+///
+/// Sample `i` of `n` lies at height `z = 1 − (2i + 1)/n` and longitude `2π frac(i/φ)` (spherical Fibonacci point set,
+/// Keinert et al. 2015). Areas of cells differ by 12 % at most, and any rotation of the sphere can be looked up in constant
+/// time: samples need not move when plates do.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    points: Vec<DVec3>,
+    mesh: Mesh,
+    inverse: Inverse,
+}
+
+impl Lattice {
+    /// The lattice of `samples` points.
+    ///
+    /// # Errors
+    /// When `samples` is outside [`SAMPLES_RANGE`].
+    pub fn new(samples: usize) -> Result<Self, LatticeError> {
+        if !(SAMPLES_RANGE.0..=SAMPLES_RANGE.1).contains(&samples) {
+            return Err(LatticeError::Size { found: samples });
+        }
+        let points: Vec<DVec3> = (0..samples).map(|i| sample(i, samples)).collect();
+        let mesh = Mesh::new(&points).ok_or(LatticeError::Open(samples))?;
+        Ok(Self {
+            points,
+            mesh,
+            inverse: Inverse::new(samples),
+        })
+    }
+
+    /// Number of samples.
+    #[expect(clippy::len_without_is_empty, reason = "a lattice is never empty")]
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Where the samples are, unit vectors.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// Where sample `i` is.
+    pub fn point(&self, i: u32) -> DVec3 {
+        self.points[i as usize]
+    }
+
+    /// The samples that share an edge of the triangulation with `i`, counter-clockwise seen from outside.
+    pub fn neighbours(&self, i: u32) -> &[u32] {
+        self.mesh.neighbours(i)
+    }
+
+    /// Corners of the `2n − 4` triangles, counter-clockwise seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        self.mesh.triangles()
+    }
+
+    /// Areas of the samples' Voronoi cells, steradians; they sum to 4π.
+    pub fn areas(&self) -> &[f64] {
+        self.mesh.areas()
+    }
+
+    /// Distance of neighbours in a hexagonal lattice of as many samples, radians.
+    pub fn spacing(&self) -> f64 {
+        (2.0 * 4.0 * PI / self.len() as f64 / 3_f64.sqrt()).sqrt()
+    }
+
+    /// The sample nearest to `p`, a unit vector, in constant time (inverse Fibonacci mapping, Keinert et al. 2015).
+    pub fn nearest(&self, p: DVec3) -> u32 {
+        self.inverse.nearest(p, &self.points)
+    }
+
+    /// The triangle that holds `p`, a unit vector, and its barycentric weights there (they sum to 1, none is negative).
+    pub fn locate(&self, p: DVec3) -> ([u32; 3], [f64; 3]) {
+        let nearest = self.nearest(p);
+        self.locate_near(p, nearest)
+    }
+
+    /// As [`Self::locate`], where the nearest sample is known.
+    pub fn locate_near(&self, p: DVec3, nearest: u32) -> ([u32; 3], [f64; 3]) {
+        let star = self.neighbours(nearest);
+        let centre = self.point(nearest);
+        let (mut best, mut best_least) = (([nearest; 3], [1.0, 0.0, 0.0]), f64::NEG_INFINITY);
+        for (k, &a) in star.iter().enumerate() {
+            let b = star[(k + 1) % star.len()];
+            let (pa, pb) = (self.point(a), self.point(b));
+            // Volumes of p with each edge: positive inside.
+            let weights = [
+                p.dot(pa.cross(pb)),
+                p.dot(pb.cross(centre)),
+                p.dot(centre.cross(pa)),
+            ];
+            let least = weights[0].min(weights[1]).min(weights[2]);
+            if least > best_least {
+                let clamped = weights.map(|w| w.max(0.0));
+                let sum = clamped[0] + clamped[1] + clamped[2];
+                (best, best_least) = (([nearest, a, b], clamped.map(|w| w / sum)), least);
+                if least >= 0.0 {
+                    break;
+                }
+            }
+        }
+        best
+    }
+}
+
+/// Sample `i` of `n`.
+fn sample(i: usize, n: usize) -> DVec3 {
+    let z = 1.0 - (2 * i + 1) as f64 / n as f64;
+    let radius = (1.0 - z * z).max(0.0).sqrt();
+    let (sin, cos) = (TAU * (i as f64 * (GOLDEN - 1.0)).fract()).sin_cos();
+    DVec3::new(radius * cos, radius * sin, z)
+}
+
+/// For each zone of latitude, the cell of the lattice that neighbouring samples span there.
+#[derive(Clone, Debug)]
+struct Inverse {
+    n: f64,
+    /// By `k − 2`.
+    zones: Vec<Zone>,
+}
+
+/// Steps from a sample to the ones `F(k)` and `F(k+1)` further on.
+#[derive(Clone, Copy, Debug)]
+struct Zone {
+    /// Columns: change of (longitude, height) for either step.
+    basis: DMat2,
+    inverse: DMat2,
+}
+
+impl Inverse {
+    fn new(samples: usize) -> Self {
+        let n = samples as f64;
+        let last = zone_of(n, 0.0);
+        let zones = (2..=last)
+            .map(|k| {
+                let fibonacci = GOLDEN.powi(k) / 5_f64.sqrt();
+                let step = |f: f64| {
+                    let turn = ((f + 1.0) * (GOLDEN - 1.0)).fract() - (GOLDEN - 1.0);
+                    DVec2::new(TAU * turn, -2.0 * f / n)
+                };
+                let basis = DMat2::from_cols(step(fibonacci.round()), step((fibonacci * GOLDEN).round()));
+                Zone {
+                    basis,
+                    inverse: basis.inverse(),
+                }
+            })
+            .collect();
+        Self { n, zones }
+    }
+
+    fn nearest(&self, p: DVec3, points: &[DVec3]) -> u32 {
+        let z = p.z.clamp(-1.0, 1.0);
+        let k = zone_of(self.n, z);
+        let zone = &self.zones[((k - 2) as usize).min(self.zones.len() - 1)];
+        let top = 1.0 - 1.0 / self.n;
+        let corner = (zone.inverse * DVec2::new(p.y.atan2(p.x), z - top)).floor();
+        let (mut best, mut best_dot) = (0, f64::NEG_INFINITY);
+        for s in 0..4 {
+            let step = corner + DVec2::new(f64::from(s % 2), f64::from(s / 2));
+            let height = (zone.basis * step).y + top;
+            // Beyond a pole the lattice goes on on the other side.
+            let height = 2.0 * height.clamp(-1.0, 1.0) - height;
+            let index =
+                ((self.n * 0.5 - height * self.n * 0.5).floor().max(0.0) as usize).min(points.len() - 1);
+            let dot = points[index].dot(p);
+            if dot > best_dot {
+                (best, best_dot) = (index as u32, dot);
+            }
+        }
+        best
+    }
+}
+
+/// Which pair of Fibonacci numbers spans the cells at height `z`, at least 2.
+fn zone_of(n: f64, z: f64) -> i32 {
+    let across = (n * PI * 5_f64.sqrt() * (1.0 - z * z)).max(1.0);
+    ((across.ln() / (2.0 * GOLDEN.ln())).floor() as i32).max(2)
+}
