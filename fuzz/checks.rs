@@ -1,6 +1,7 @@
 //! What must hold for any bytes: run by the fuzz targets, and by `tests/fuzz_regressions.rs` on what they once found.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use orogen::gesture::command::Command;
 use orogen::gesture::contact::{ContactEvent, InputFrame, Source};
@@ -8,8 +9,10 @@ use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
 use orogen::input::evemu::{EvemuOptions, import_evemu};
+use orogen::input::planet::{Colours, HEIGHT_RANGE_M, Heights};
 use orogen::rock::Stratigraphy;
 use orogen::settings::Settings;
+use orogen::sphere::Lattice;
 
 /// Ticks of 16 ms that follow a frame, at most: enough for every timer of the hands to run out.
 const TICKS_AFTER_FRAME: u64 = 40;
@@ -71,6 +74,30 @@ pub(crate) fn pile(bytes: &[u8]) {
             let again =
                 Stratigraphy::parse(written.as_bytes(), "again").expect("what was written can be read");
             assert_eq!(again, pile);
+        }
+        Err(error) => one_line(&error.to_string()),
+    }
+}
+
+/// An image of a planet is refused in one line, or has a height within range and a plate for every sample.
+pub(crate) fn planet_image(bytes: &[u8]) {
+    static LATTICE: LazyLock<Lattice> = LazyLock::new(|| Lattice::new(1_000).expect("a size within range"));
+    match Heights::decode(bytes, [-11_000.0, 9_000.0]) {
+        Ok(heights) => {
+            let heights = heights.on(&LATTICE);
+            assert_eq!(heights.len(), LATTICE.len());
+            assert!(heights.iter().all(|z| HEIGHT_RANGE_M.contains(z)));
+        }
+        Err(error) => one_line(&error.to_string()),
+    }
+    match Colours::decode(bytes).and_then(|colours| colours.on(&LATTICE)) {
+        Ok(plate) => {
+            assert_eq!(plate.len(), LATTICE.len());
+            let count = plate.iter().max().map_or(0, |&most| most + 1);
+            assert!(
+                (0..count).all(|number| plate.contains(&number)),
+                "a plate without samples"
+            );
         }
         Err(error) => one_line(&error.to_string()),
     }

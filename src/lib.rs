@@ -8,14 +8,15 @@
 //!
 //! | module | what it does | what it must not know |
 //! |---|---|---|
-//! | [`units`] | frames and quantities; converts table mm ↔ plan m | anything |
+//! | [`units`] | frames and quantities; converts table mm ↔ plan m, and ↔ places on the globe | anything |
 //! | [`sphere`] | samples on the sphere that never move, their neighbours, the nearest one | anything |
 //! | [`rock`] | layers of rock, their column at a place, named piles | anything |
 //! | [`gesture`] | contacts → strokes → hands → rigid fit; the gesture file | worlds, window, clock, files |
 //! | [`mountain`] | plates, transport, compression, fault, uplift, strata of the flat world | window, files, who owns it |
 //! | [`terrain`] | TIN, flow routing with lakes, stream power, landslides | plates, gestures, window |
 //! | [`isostasy`] | the crust floats: root, rebound and foreland by flexure on a coarse grid | plates, gestures, window |
-//! | [`sim`] | owns the world: tick, parameters, undo, roll-back, quarantine | window, clock, files |
+//! | [`globe`] | plates on the sphere: subduction, collision, sea floor, rifts | the flat world, gestures, window |
+//! | [`sim`] | owns the world: tick, parameters, undo, roll-back, quarantine; [`sim::globe`] owns the planet | window, clock, files |
 //! | [`surface`] | what a tick yields for eyes and files: plain data | who made it |
 //! | [`mod@slice`] | surface → what a vertical cut meets, and the shapes that draw it | who made it, who paints it |
 //! | [`survey`] | a land on its nodes → surface | plates, gestures, window |
@@ -24,7 +25,7 @@
 //! | [`kiosk`] | attract, invite, play, idle, reset; staff access | worlds, window, clock, files |
 //! | [`settings`] | the one settings file, validated | window |
 //! | [`picture`] | surface → relief map | worlds |
-//! | `gpu`, `render` | the graphics card; surface → shaded land in plan and in perspective (feature `app`) | gestures, worlds |
+//! | `gpu`, `render` | the graphics card; surface → shaded land in plan and in perspective, or the globe (feature `app`) | gestures, worlds |
 //! | `ui` | ink, controls and staff menu on top of the land (feature `app`) | worlds, window |
 //! | `app` | window, event loop, threads, metrics (feature `app`) | |
 //! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
@@ -63,6 +64,8 @@ pub mod mountain;
 pub mod terrain;
 
 pub mod isostasy;
+
+pub mod globe;
 
 pub mod sim;
 

@@ -1,11 +1,16 @@
-//! Frames and quantities: the only place that converts table millimetres ↔ plan metres.
+//! Frames and quantities: the only place that converts table millimetres ↔ plan metres or places on the globe.
 //!
 //! * **Table frame**: millimetres from the table's top-left corner, x to the right, y *down* (gesture files, contacts).
 //! * **Plan frame**: metres on the ground, x east, y *north*, origin at the south-west corner (all of `mountain`,
 //!   `terrain`, and every exported mesh). The top of the table is north, so pictures, whose first row is the
 //!   northern one, show the land as the table does.
+//! * **Globe**: unit vectors, z north pole; [`GlobeView`] says where the table shows which of them.
 //!
 //! Quantities without a unit in their name are SI; model time is in years and says so (`_yr`).
+
+mod globe;
+
+pub use globe::{GlobeView, ZOOM_LIMITS};
 
 use glam::DVec2;
 

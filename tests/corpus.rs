@@ -11,6 +11,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use orogen::gesture::command::Mode;
 use orogen::gesture::file::{GestureFile, read_gesture};
 use orogen::report::RangeFacts;
 use orogen::sim::{Sim, SimParams, TICK_US, World};
@@ -43,6 +44,7 @@ fn files() -> Vec<(String, GestureFile)> {
             let file = read_gesture(fs::File::open(&path).expect("file"), &name).expect("a good file");
             (name, file)
         })
+        .filter(|(_, file)| file.header.mode == Mode::Mountain)
         .collect()
 }
 

@@ -29,7 +29,7 @@ const BORDER_MM: f64 = 82.0;
 /// When a rule of the gesture grammar or a scene changes, `every_file_comes_to_its_hands` prints the line that it
 /// found. Take it over only after having read, line by line, why it is what the grammar says; a line that cannot be
 /// explained is a fault of the grammar's code.
-const GOLDEN: [(&str, [u64; 5]); 34] = [
+const GOLDEN: [(&str, [u64; 5]); 36] = [
     ("builtin_session", [5, 4, 1, 0, 0]),
     ("cancel", [1, 1, 0, 0, 1]),
     ("drumming", [16, 0, 0, 16, 0]),
@@ -46,6 +46,8 @@ const GOLDEN: [(&str, [u64; 5]); 34] = [
     ("palm_and_sleeve", [2, 1, 0, 0, 2]),
     ("palm_only", [2, 0, 0, 0, 3]),
     ("pinch_and_spread", [4, 4, 0, 0, 0]),
+    ("planet_collide_and_tear", [6, 5, 3, 0, 0]),
+    ("planet_island_arc", [2, 1, 2, 0, 0]),
     ("pull_apart", [2, 2, 0, 0, 0]),
     ("pulling_towards_oneself", [1, 1, 0, 0, 0]),
     ("range_andes", [6, 3, 3, 0, 0]),

@@ -46,11 +46,17 @@ fn pile() {
     assert!(replay("pile", checks::pile) >= 1);
 }
 
+#[test]
+fn planet_image() {
+    assert!(replay("planet_image", checks::planet_image) >= 3);
+}
+
 /// Seeds that are refused at the first line would teach the fuzzer nothing.
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
     use orogen::input::evemu::{EvemuOptions, import_evemu};
+    use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
@@ -65,6 +71,10 @@ fn seeds_are_read() {
     }
     let bytes = fs::read(seeds.join("pile/digne.toml")).unwrap();
     orogen::rock::Stratigraphy::parse(&bytes, "digne").unwrap();
+    let planet = |name: &str| fs::read(seeds.join("planet_image").join(name)).unwrap();
+    Heights::decode(&planet("heights.png"), [0.0, 1.0]).unwrap();
+    Colours::decode(&planet("plates.png")).unwrap();
+    Colours::decode(&planet("plates.exr")).unwrap();
     let options = EvemuOptions {
         range: None,
         size_mm: Some([100.0, 60.0].into()),

@@ -5,7 +5,7 @@
 mod support;
 
 use glam::DVec2;
-use orogen::gesture::command::{self, Action, Command, MAX_RAISE, PATH_POINTS, Tool};
+use orogen::gesture::command::{self, Action, Command, MAX_RAISE, Mode, PATH_POINTS, Tool};
 use orogen::gesture::contact::{Phase, Side};
 use orogen::instrument::{ControlKind, Deed, InstrumentParams, Key, Route};
 use orogen::surface::Cut;
@@ -403,4 +403,48 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn the_planet_has_no_tools_but_hands_and_the_way_back() {
+    let mut table = Table::new();
+    let tap = table.place(Side::North, ControlKind::World);
+    table.tap(1, tap);
+    let to_globe = Deed::World {
+        side: Side::North,
+        mode: Mode::Globe,
+    };
+    assert_eq!(table.instrument.drain(), [to_globe]);
+    table.instrument.set_params(InstrumentParams {
+        mode: Mode::Globe,
+        ..params()
+    });
+    // Even while the clock stands, which on the land gives everybody the edit tool.
+    table.set.clock.paused = true;
+    table.wait(1);
+    let kinds: Vec<ControlKind> = table
+        .instrument
+        .controls()
+        .iter()
+        .map(|control| control.kind)
+        .collect();
+    for kind in &kinds {
+        assert!(
+            !matches!(
+                kind,
+                ControlKind::Tool(_) | ControlKind::Scrub | ControlKind::Save
+            ),
+            "{kind:?}"
+        );
+    }
+    assert!(kinds.contains(&ControlKind::Undo) && kinds.contains(&ControlKind::StartOver));
+    assert_eq!(table.down(7, SIZE_MM / 2.0), Route::Land);
+    table.up(7);
+    let tap = table.place(Side::South, ControlKind::World);
+    table.tap(2, tap);
+    let back = Deed::World {
+        side: Side::South,
+        mode: Mode::Mountain,
+    };
+    assert_eq!(table.instrument.drain(), [back]);
 }

@@ -24,6 +24,24 @@ const RULES: &[Rule] = &[
         reason: "frames and quantities know nothing",
     },
     Rule {
+        module: "sphere",
+        forbidden: &["crate::"],
+        reason: "samples on a sphere know nothing",
+    },
+    Rule {
+        module: "globe",
+        forbidden: &[
+            "crate::mountain",
+            "crate::terrain",
+            "crate::gesture",
+            "crate::sim",
+            "crate::picture",
+            "crate::export",
+            "crate::input",
+        ],
+        reason: "the planet knows neither the flat world, nor hands, nor its viewers",
+    },
+    Rule {
         module: "rock",
         forbidden: &[
             "crate::gesture",

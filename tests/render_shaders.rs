@@ -7,7 +7,7 @@ use std::mem::offset_of;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
 use orogen::render::RenderQuality;
-use orogen::render::layout::{Air, Ground, Reach, SHADERS, View, source};
+use orogen::render::layout::{Air, Frames, Globe, Ground, Reach, SHADERS, View, source};
 
 /// Names of the fields of a Rust struct and their places in it, bytes.
 struct Layout {
@@ -81,6 +81,8 @@ fn shared_layouts_are_the_same_on_both_sides() {
             lowland, plan, tilt, exaggeration, haze, lamp, encodes, dusk, layered),
         layout!(Air in "land": mist, distance, glow, horizon, middle, zenith, table),
         layout!(Reach in "rivers": from_to, half_widths, large),
+        layout!(Globe in "globe": turn, centre, size, radius, octaves, lamp, encodes, window),
+        layout!(Frames in "globe": turns),
     ];
     for layout in &layouts {
         let found = differences(layout, &parse(layout.shader));

@@ -170,7 +170,8 @@ fn a_finger_on_a_control_does_not_sculpt() {
         "before the other finger the land rose by {risen:.0} m"
     );
     let under = risen_land.risen(&land, at, 40.0);
-    assert!(under < 30.0, "under the control the land rose by {under:.0} m");
+    // Rivers of the range may lay something down there; a finger raises hundreds of metres.
+    assert!(under < 60.0, "under the control the land rose by {under:.0} m");
 }
 
 #[test]
@@ -363,6 +364,9 @@ fn the_checks_can_fail() {
             .collect();
         second.insert("t_s".to_owned(), t_s.into());
         second.insert("phase".to_owned(), phase.into());
+        for words in ["mode", "adapter", "backend"] {
+            second.insert(words.to_owned(), "some".into());
+        }
         // The next line is being written.
         format!("{}\n{{\"t_s\":", serde_json::Value::from(second))
     };

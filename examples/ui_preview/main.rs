@@ -10,7 +10,7 @@ use std::error::Error;
 use std::path::Path;
 
 use egui::{Context, LayerId, Rect};
-use orogen::gesture::command::Tool;
+use orogen::gesture::command::{Mode, Tool};
 use orogen::gesture::contact::{ContactKey, Side, Source};
 use orogen::instrument::{
     ControlKind, ControlView, EditView, Editing, Instrument, InstrumentParams, Route, Scene as TableScene,
@@ -196,6 +196,7 @@ fn controls(moment: &Moment, clock: &Clock, near: bool) -> Vec<ControlView> {
         corner: orogen::settings::Corner::default(),
         unattended: false,
         folds: true,
+        mode: Mode::Mountain,
         readouts: false,
         gesture: orogen::gesture::params::GestureParams::default(),
     });

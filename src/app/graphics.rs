@@ -5,9 +5,15 @@ use std::sync::Arc;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
+use super::worlds::Worlds;
+use crate::gesture::command::Mode;
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Camera, LandRenderer, LandStyle, RenderQuality};
-use crate::surface::Surface;
+use crate::render::{Camera, Disc, GlobeRenderer, LandRenderer, LandStyle, RenderQuality};
+use crate::surface::planet::Planet;
+
+/// Least time between two lands on a software adapter, s: taking one over costs as much as a frame, and growth makes a
+/// smooth motion of fewer.
+const SOFTWARE_LAND_S: f64 = 0.12;
 
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,11 +34,13 @@ pub(super) struct Overlay {
     pub(super) pixels_per_point: f32,
 }
 
-/// The land of a frame.
+/// What lies below the overlay of a frame.
 #[derive(Debug)]
 pub(super) struct Scene<'a> {
     pub(super) camera: &'a Camera,
     pub(super) style: &'a LandStyle,
+    /// Where the planet is, while it is shown instead of the land.
+    pub(super) disc: Option<Disc>,
     /// Seconds since the frame before.
     pub(super) dt_s: f32,
 }
@@ -45,6 +53,14 @@ pub(super) struct Graphics {
     gpu: Gpu,
     config: wgpu::SurfaceConfiguration,
     land: LandRenderer,
+    /// Made when the planet is shown for the first time.
+    globe: Option<GlobeRenderer>,
+    scale: f32,
+    /// The world in the picture, and which of its lands.
+    shown: Option<(Mode, u64)>,
+    /// How old the mountain was, years, and when something was taken over, s.
+    shown_yr: f64,
+    shown_s: f64,
     overlay: egui_wgpu::Renderer,
     /// The surface must be made anew before the next frame.
     surface_lost: bool,
@@ -92,6 +108,11 @@ impl Graphics {
             gpu,
             config,
             land,
+            globe: None,
+            scale: 1.0,
+            shown: None,
+            shown_yr: 0.0,
+            shown_s: f64::NEG_INFINITY,
             overlay,
             surface_lost: false,
         })
@@ -119,15 +140,38 @@ impl Graphics {
 
     /// Part of the window's resolution at which the land is drawn from now on.
     pub(super) fn set_scale(&mut self, scale: f32) {
+        self.scale = scale;
         self.land.set_scale(scale);
     }
 
-    /// Takes a new land over; it grows into the picture. `leaps`: it is another one, not the last some years later.
-    pub(super) fn show(&mut self, surface: &Surface, leaps: bool) {
-        if leaps {
+    fn show_planet(&mut self, planet: &Planet) {
+        let (gpu, format) = (&self.gpu, self.config.format);
+        let globe = self.globe.get_or_insert_with(|| GlobeRenderer::new(gpu, format));
+        globe.show(gpu, planet);
+    }
+
+    /// Takes over what the session of the world that is shown has drawn anew; `now_s` is the table's time. A land grows
+    /// into the picture.
+    pub(super) fn follow(&mut self, worlds: &Worlds, now_s: f64) {
+        let now = (worlds.shown(), worlds.land());
+        let turned = self.shown.is_none_or(|(mode, _)| mode != now.0);
+        let rests = self.gpu.is_software() && now_s - self.shown_s < SOFTWARE_LAND_S;
+        if self.shown == Some(now) || (rests && !turned) {
+            return;
+        }
+        self.shown = Some(now);
+        self.shown_s = now_s;
+        if let Some(globe) = worlds.globe() {
+            self.show_planet(&globe.planet);
+            return;
+        }
+        let surface = &worlds.mountain().surface;
+        if surface.elapsed_yr < self.shown_yr {
+            // It is another one, not the last some years later.
             self.land.leap();
         }
         self.land.show(&self.gpu, surface);
+        self.shown_yr = surface.elapsed_yr;
     }
 
     /// Draws a frame and presents it.
@@ -161,15 +205,22 @@ impl Graphics {
             .gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        self.land.draw(
-            &self.gpu,
-            &mut encoder,
-            &view,
-            self.size_px(),
-            scene.camera,
-            scene.style,
-            scene.dt_s,
-        );
+        let size_px = self.size_px();
+        match (&scene.disc, &mut self.globe) {
+            (Some(disc), Some(globe)) => {
+                globe.set_scale(self.scale);
+                globe.draw(&self.gpu, &mut encoder, &view, size_px, disc, scene.style.lamp);
+            }
+            _ => self.land.draw(
+                &self.gpu,
+                &mut encoder,
+                &view,
+                size_px,
+                scene.camera,
+                scene.style,
+                scene.dt_s,
+            ),
+        }
         let mut commands = self.draw_overlay(&mut encoder, &view, overlay);
         commands.push(encoder.finish());
         self.gpu.queue.submit(commands);

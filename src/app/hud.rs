@@ -18,6 +18,7 @@ use crate::instrument::Route;
 use crate::kiosk::{DoorPhase, Phase};
 use crate::render::plan_rect;
 use crate::settings::Settings;
+use crate::ui::globe::{self, GlobeChart};
 use crate::ui::halo::Halos;
 use crate::ui::ink::Chart;
 use crate::ui::readouts::Readings;
@@ -31,6 +32,7 @@ const FIGURES_S: f64 = 0.25;
 pub(super) struct Hud {
     context: Context,
     chart: Chart,
+    globe: GlobeChart,
     halos: Halos,
     panel: StaffPanel,
     sheets: Sheets,
@@ -72,6 +74,7 @@ impl Hud {
         Self {
             context,
             chart: Chart::default(),
+            globe: GlobeChart::default(),
             halos: Halos::default(),
             panel: StaffPanel::default(),
             sheets: Sheets::default(),
@@ -186,9 +189,12 @@ impl Hud {
                 point(corner + contact.position * per_mm),
             );
         }
-        let frame = table.frame();
-        self.halos.meet(&frame.hands, now_s);
+        self.halos.meet(table.worlds().hands(), now_s);
         self.halos.tick(now_s);
+        if let Some(globe) = table.worlds().globe() {
+            self.globe.follow(globe);
+        }
+        let frame = table.frame();
         self.chart
             .follow(&frame.surface.plates, &frame.surface.faults, now_s);
         for (side, figures) in [Side::North, Side::South].into_iter().zip(&mut self.figures) {
@@ -244,9 +250,63 @@ impl Hud {
         let now_s = self.now_s;
         let (map, aloft) = (table.map(), table.aloft());
         let flat = Sight::flat(map, rect);
+        let instrument = table.instrument();
+        match table.worlds().globe() {
+            Some(planet) => {
+                self.globe.draw(&painter, &flat, planet, table.eye().style().lamp);
+                globe::draw_tethers(&painter, &flat, planet);
+            }
+            None => self.draw_mountain(&painter, table, rect),
+        }
+        if let Some(hint) = table.kiosk().hint() {
+            if settings.view.reduced_motion {
+                ghost::draw_still(&painter, &flat, &hint);
+            } else {
+                ghost::draw(&painter, &flat, &hint.hands(map.size_mm()));
+            }
+        }
+        let quiet = (1.0 - aloft) as f32;
+        for paper in instrument.papers().filter(|_| quiet > 0.0) {
+            section::draw_sheet(&painter, &flat, &paper, &self.sheets.sheet(paper.side), quiet);
+        }
+        if quiet > 0.0 && table.kiosk().phase() != Phase::Attract {
+            controls::draw(&painter, &flat, &instrument.controls(), quiet);
+        }
+        for (side, &figures) in [Side::North, Side::South].into_iter().zip(&self.figures) {
+            let figures = figures as f32;
+            if let Some(planet) = table.worlds().globe() {
+                globe::draw_legend(&painter, &flat, planet, side, figures);
+            } else {
+                let exaggeration = table.eye().drawn_exaggeration();
+                let clock = &table.frame().clock;
+                readouts::draw(&painter, &flat, &Readings { clock, exaggeration }, side, figures);
+            }
+        }
+        if let Phase::IdleWarning { left_ms } = table.kiosk().phase() {
+            let whole_ms = (settings.kiosk.countdown_s * 1e3) as u64;
+            warning::draw(&painter, &flat, screen, left_ms, whole_ms);
+        }
+        if let DoorPhase::Holding { progress } = table.door_phase() {
+            let corner = settings.staff.corner.position(map.size_mm());
+            staff::draw_hold(&painter, &flat, corner, progress);
+        }
+        if let Some(text) = table.notice() {
+            notice(&painter, &flat, rect, text);
+        }
+        if let Some(left_s) = table.cleaning_s() {
+            warning::clean(&painter, &flat, screen, left_s);
+        }
+        self.halos.draw(&painter, &flat, now_s);
+    }
+
+    /// The ink on the mountain.
+    fn draw_mountain(&self, painter: &egui::Painter, table: &Table, rect: Rect) {
+        let now_s = self.now_s;
+        let (map, aloft) = (table.map(), table.aloft());
+        let flat = Sight::flat(map, rect);
         let frame = table.frame();
-        let camera = *table.camera();
-        let exaggeration = table.style().drawn_exaggeration(camera.tilt());
+        let camera = *table.eye().camera();
+        let exaggeration = table.eye().drawn_exaggeration();
         let project = |plan: DVec2, height: f64| {
             let at = camera.project(plan.extend(height * exaggeration))?;
             Some(point(at))
@@ -264,54 +324,18 @@ impl Hud {
             .iter()
             .any(|&side| instrument.tool(side) == Tool::Fold);
         if folding {
-            folds::draw_axes(&painter, on_land, &frame.surface.folds, ink);
+            folds::draw_axes(painter, on_land, &frame.surface.folds, ink);
         }
         self.chart
-            .draw(&painter, on_land, ink, editing.then_some(&edits[..]), now_s);
+            .draw(painter, on_land, ink, editing.then_some(&edits[..]), now_s);
         folds::draw_tool(
-            &painter,
+            painter,
             on_land,
             &instrument.strokes(),
             instrument.fold_handles(),
             ink,
         );
-        section::draw_lines(&painter, on_land, instrument.slices(), 1.0);
-        if let Some(hint) = table.kiosk().hint() {
-            if settings.view.reduced_motion {
-                ghost::draw_still(&painter, &flat, &hint);
-            } else {
-                ghost::draw(&painter, &flat, &hint.hands(map.size_mm()));
-            }
-        }
-        let quiet = (1.0 - aloft) as f32;
-        for paper in instrument.papers().filter(|_| quiet > 0.0) {
-            section::draw_sheet(&painter, &flat, &paper, &self.sheets.sheet(paper.side), quiet);
-        }
-        if quiet > 0.0 && table.kiosk().phase() != Phase::Attract {
-            controls::draw(&painter, &flat, &table.instrument().controls(), quiet);
-        }
-        let readings = Readings {
-            clock: &frame.clock,
-            exaggeration,
-        };
-        for (side, &figures) in [Side::North, Side::South].into_iter().zip(&self.figures) {
-            readouts::draw(&painter, &flat, &readings, side, figures as f32);
-        }
-        if let Phase::IdleWarning { left_ms } = table.kiosk().phase() {
-            let whole_ms = (settings.kiosk.countdown_s * 1e3) as u64;
-            warning::draw(&painter, &flat, screen, left_ms, whole_ms);
-        }
-        if let DoorPhase::Holding { progress } = table.door_phase() {
-            let corner = settings.staff.corner.position(map.size_mm());
-            staff::draw_hold(&painter, &flat, corner, progress);
-        }
-        if let Some(text) = table.notice() {
-            notice(&painter, &flat, rect, text);
-        }
-        if let Some(left_s) = table.cleaning_s() {
-            warning::clean(&painter, &flat, screen, left_s);
-        }
-        self.halos.draw(&painter, &flat, now_s);
+        section::draw_lines(painter, on_land, instrument.slices(), 1.0);
     }
 
     fn panels(

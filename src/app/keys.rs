@@ -76,6 +76,7 @@ fn named(key: &WinitKey, control: bool) -> Option<Key> {
             ("i", false) => Some(Key::Readouts),
             ("s", _) => Some(Key::Save),
             ("r", false) => Some(Key::StartOver),
+            ("g", false) => Some(Key::World),
             ("+" | "=", false) => Some(Key::Faster),
             ("-", false) => Some(Key::Slower),
             _ => None,

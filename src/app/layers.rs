@@ -7,7 +7,7 @@ use egui::{Context, Rect};
 
 use super::save::write_whole;
 use super::table::Table;
-use crate::gesture::command::Action;
+use crate::gesture::command::{Action, Mode};
 use crate::gesture::contact::Side;
 use crate::input::pile::read_pile;
 use crate::mountain::fold::wavelength::wavelength;
@@ -43,7 +43,7 @@ impl Layers {
 
     /// Shows the panel, if it is open, and does what was pressed. Where it is, points.
     pub(super) fn show(&mut self, context: &Context, table: &mut Table, scale: f32) -> Option<Rect> {
-        if !self.open {
+        if !self.open || table.worlds().shown() != Mode::Mountain {
             return None;
         }
         let view = LayersView {

@@ -14,7 +14,9 @@ const MOST_SAMPLES: usize = 4096;
 pub(super) struct Facts {
     /// Where the kiosk's circle stands.
     pub(super) phase: &'static str,
-    /// Erosion steps since the session began.
+    /// The world that is shown.
+    pub(super) mode: &'static str,
+    /// Steps of the world since its session began.
     #[serde(skip)]
     pub(super) steps: u64,
     /// Contacts that are down, over controls or land.
@@ -41,7 +43,7 @@ pub(super) struct Facts {
     pub(super) panics: u64,
     /// Times the graphics card was lost and found again.
     pub(super) devices_lost: u64,
-    /// Nodes of the land.
+    /// Nodes of the land, or samples of the planet.
     pub(super) nodes: usize,
     /// Part of the window's resolution at which the land is drawn.
     pub(super) scale: f32,
@@ -51,6 +53,11 @@ pub(super) struct Facts {
     pub(super) max_m: f32,
     /// Least height, metres.
     pub(super) min_m: f32,
+    /// Plates of the planet; 0 while the mountain is shown.
+    pub(super) plates: usize,
+    /// Those that hands lead, and how fast the fastest of them turns, degrees per My.
+    pub(super) plates_led: usize,
+    pub(super) led_deg_per_my: f64,
     /// Graphics adapter.
     pub(super) adapter: String,
     /// Graphics interface.

@@ -4,6 +4,8 @@
 //! session's thread ([`crate::live`]) owns the world; the watch reads the heartbeats of both. This is the only module
 //! beside the command line that reads a clock, and it hands the time on as a number.
 
+mod circle;
+mod eye;
 mod governor;
 mod graphics;
 mod hud;
@@ -15,10 +17,12 @@ mod metrics;
 mod save;
 mod setup;
 mod sheets;
+mod shows;
 mod table;
 mod told;
 mod watch;
 mod window;
+mod worlds;
 
 use std::io;
 use std::path::PathBuf;

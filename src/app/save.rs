@@ -55,10 +55,10 @@ impl Saver {
         }
     }
 
-    /// Asks for the last minute of contacts.
-    pub(super) fn ask_contacts(&mut self, session: &Session) {
+    /// Takes the last minute of contacts, once it comes.
+    pub(super) fn take_contacts(&mut self, bytes: Receiver<Vec<u8>>) {
         if self.waiting.is_none() {
-            self.waiting = Some(Waiting::Contacts(session.ring_file()));
+            self.waiting = Some(Waiting::Contacts(bytes));
         }
     }
 

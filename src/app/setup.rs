@@ -7,20 +7,25 @@ use glam::DVec2;
 
 use super::Options;
 
+use crate::gesture::command::Mode;
 use crate::gesture::params::GestureParams;
 use crate::input::pile::{PileError, named_pile};
 use crate::input::window::WindowMap;
 use crate::instrument::InstrumentParams;
 use crate::kiosk::{DoorParams, Flight};
+use crate::live::LiveGlobeParams;
 use crate::render::plan_rect;
 use crate::rock::Stratigraphy;
 use crate::settings::Settings;
+use crate::sim::globe::{GlobeSimParams, LIVE_SAMPLES, default_start};
 use crate::units::PlanMap;
 
 /// Columns of the rasters that the session draws for the window.
 const COLUMNS: usize = 1024;
 /// The same where processor cores also draw the picture.
 const SOFTWARE_COLUMNS: usize = 512;
+/// Samples of the planet where processor cores also draw the picture.
+const SOFTWARE_SAMPLES: usize = 24_000;
 /// Nodes of the land where the settings leave it to the program: on many cores, on few, and on few that also draw.
 const NODES: [usize; 3] = [60_000, 30_000, 15_000];
 /// From so many cores on there are many.
@@ -42,6 +47,17 @@ pub(super) fn nodes(settings: &Settings, software: bool) -> usize {
     settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
 }
 
+/// What the planet's session is made for.
+pub(super) fn globe_params(size_mm: DVec2, software: bool) -> LiveGlobeParams {
+    LiveGlobeParams {
+        size_mm,
+        samples: if software { SOFTWARE_SAMPLES } else { LIVE_SAMPLES },
+        start: default_start(1),
+        sim: GlobeSimParams::default(),
+        threads: 0,
+    }
+}
+
 /// The rock under new land.
 pub(super) fn layers(options: &Options, settings: &Settings) -> Result<Arc<Stratigraphy>, PileError> {
     if let Some(name) = &options.layers {
@@ -58,11 +74,17 @@ pub(super) fn window_map(settings: &Settings, map: &PlanMap, size_px: DVec2) -> 
 }
 
 /// What the instrument is made for.
-pub(super) fn instrument_params(settings: &Settings, size_mm: DVec2, unattended: bool) -> InstrumentParams {
+pub(super) fn instrument_params(
+    settings: &Settings,
+    size_mm: DVec2,
+    unattended: bool,
+    mode: Mode,
+) -> InstrumentParams {
     InstrumentParams {
         size_mm,
         corner: settings.staff.corner,
         unattended,
+        mode,
         folds: !settings.view.tools.are_few(unattended),
         readouts: settings.view.readouts,
         gesture: GestureParams::default(),

@@ -6,26 +6,23 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use super::eye::Eye;
 use super::save::Saver;
-use super::setup::{door_params, grounded, instrument_params, nodes, raster_width, window_map};
+use super::setup::{door_params, globe_params, instrument_params, nodes, raster_width, window_map};
+use super::shows::Shows;
+use super::worlds::Worlds;
 use super::{AppError, Options};
-use crate::gesture::command::{Action, Command};
+use crate::gesture::command::{Action, Command, Mode};
 use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase, Side};
-use crate::gesture::hand::{Doing, HandView};
 use crate::input::window::{TouchPhase, WindowInput};
-use crate::instrument::{ControlId, Deed, Instrument, Key, Route, Scene};
-use crate::kiosk::{DoorPhase, Effect, Flight, FlightWish, Kiosk, KioskParams, Phase, Show, StaffDoor};
-use crate::live::{Frame, Heartbeat, LiveParams, Session, Start};
-use crate::render::{Camera, Focus, LandStyle, flight};
+use crate::instrument::{ControlId, Instrument, Key, Route};
+use crate::kiosk::{DoorPhase, Kiosk, KioskParams, Phase, StaffDoor};
+use crate::live::{Frame, LiveParams};
 use crate::rock::Stratigraphy;
 use crate::settings::Settings;
 use crate::sim::SimParams;
 use crate::units::PlanMap;
 
-/// Time in which the room's light follows a reset, s.
-const EASE_S: f64 = 0.25;
-/// Time in which the eye follows a land that changes under it, s: slower than anybody notices.
-const FOLLOWS_S: f64 = 6.0;
 /// How long touches do nothing while the table is wiped, µs.
 const CLEANING_US: u64 = 30_000_000;
 
@@ -64,23 +61,6 @@ pub(super) struct Seen {
     pub(super) route: Route,
 }
 
-/// What the instrument must see, borrowed for one call.
-macro_rules! with_scene {
-    ($table:ident, $scene:ident => $call:expr) => {{
-        let frame = $table.session.current();
-        let $scene = Scene {
-            plates: &frame.surface.plates,
-            faults: &frame.surface.faults,
-            cuts: &frame.cuts,
-            map: $table.map,
-            clock: &frame.clock,
-            in_flight: $table.flight.in_flight(),
-            panels: &$table.panels,
-        };
-        $call
-    }};
-}
-
 /// The table.
 pub(super) struct Table {
     unattended: bool,
@@ -89,28 +69,23 @@ pub(super) struct Table {
     pub(super) input: WindowInput,
     pub(super) instrument: Instrument,
     pub(super) kiosk: Kiosk,
-    show: Show,
-    door: StaffDoor,
-    flight: Flight,
-    /// The flight on the ground, to begin anew with.
-    grounded: Flight,
-    wishes_fly: bool,
-    pub(super) session: Session,
-    saver: Saver,
+    pub(super) shows: Shows,
+    pub(super) door: StaffDoor,
+    pub(super) wishes_fly: bool,
+    pub(super) worlds: Worlds,
+    /// The world that a fresh table shows, and the one that the options ask for whatever the settings say.
+    pub(super) home: Mode,
+    mode: Option<Mode>,
+    pub(super) eye: Eye,
+    pub(super) saver: Saver,
     /// Rectangles of panels, table mm.
     panels: Vec<(DVec2, DVec2)>,
-    seen: Vec<Seen>,
+    pub(super) seen: Vec<Seen>,
     /// A place on a side's sheet where somebody wants a note, parts of its size.
-    note: Option<(Side, DVec2)>,
-    focus: Focus,
-    focus_goal: Focus,
-    /// The land that the goal was found on.
-    focus_land: u64,
-    camera: Camera,
-    style: LandStyle,
-    visitors: u64,
+    pub(super) note: Option<(Side, DVec2)>,
+    pub(super) visitors: u64,
     pub(super) resets: u64,
-    in_reset: bool,
+    pub(super) in_reset: bool,
     pub(super) control_presses: u64,
     pub(super) nodes: usize,
     now_us: u64,
@@ -133,7 +108,7 @@ impl Table {
         let map = settings.plan_map(size_mm);
         let unattended = options.kiosk;
         let nodes = nodes(settings, software);
-        let session = Session::spawn(LiveParams {
+        let mountain = LiveParams {
             map,
             nodes,
             seed: 1,
@@ -141,31 +116,29 @@ impl Table {
             sim: SimParams::default(),
             raster_width: raster_width(software),
             threads: 0,
-        })
-        .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
-        let focus = Focus::of(&session.current().surface);
+        };
+        let mut worlds = Worlds::new(mountain, globe_params(size_mm, software))
+            .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
+        let home = options.mode.unwrap_or(settings.mode);
+        worlds.turn_to(home);
         Ok(Self {
             unattended,
             map,
             size_px,
             input: WindowInput::new(window_map(settings, &map, size_px)),
-            instrument: Instrument::new(instrument_params(settings, size_mm, unattended)),
+            instrument: Instrument::new(instrument_params(settings, size_mm, unattended, worlds.shown())),
             kiosk: Kiosk::new(KioskParams::new(&settings.kiosk, unattended)),
-            show: Show::new(size_mm),
+            shows: Shows::new(size_mm),
             door: StaffDoor::new(door_params(settings, size_mm)),
-            flight: grounded(settings),
-            grounded: grounded(settings),
             wishes_fly: false,
-            session,
+            eye: Eye::new(settings, worlds.mountain(), map.extent(), size_px),
+            worlds,
+            home,
+            mode: options.mode,
             saver: Saver::new(options.save.clone()),
             panels: Vec::new(),
             seen: Vec::new(),
             note: None,
-            focus,
-            focus_goal: focus,
-            focus_land: 0,
-            camera: Camera::plan(map.extent(), size_px),
-            style: LandStyle::default(),
             visitors: 1,
             resets: 0,
             in_reset: false,
@@ -178,24 +151,19 @@ impl Table {
         })
     }
 
-    /// The newest frame of the session.
+    /// The newest frame of the mountain's session.
     pub(super) fn frame(&self) -> &Frame {
-        self.session.current()
+        self.worlds.mountain()
     }
 
-    /// Counts the beats of the session's thread.
-    pub(super) fn session_beats(&self) -> Heartbeat {
-        self.session.heartbeat()
+    /// Both worlds.
+    pub(super) fn worlds(&self) -> &Worlds {
+        &self.worlds
     }
 
-    /// The eye of the next picture.
-    pub(super) fn camera(&self) -> &Camera {
-        &self.camera
-    }
-
-    /// How the land is shown in the next picture.
-    pub(super) fn style(&self) -> &LandStyle {
-        &self.style
+    /// Where the mountain is seen from, and the light.
+    pub(super) fn eye(&self) -> &Eye {
+        &self.eye
     }
 
     /// Table ↔ plan.
@@ -223,9 +191,12 @@ impl Table {
         self.door.phase()
     }
 
-    /// How far the view is from the plan, 0–1.
+    /// How far the view is from the plan, 0–1. The globe is never seen aslant.
     pub(super) fn aloft(&self) -> f64 {
-        self.flight.amount()
+        match self.worlds.shown() {
+            Mode::Mountain => self.eye.aloft(),
+            Mode::Globe => 0.0,
+        }
     }
 
     /// Word of what was saved, or why not, while it is news.
@@ -245,7 +216,7 @@ impl Table {
 
     /// The artist's tools are offered.
     pub(super) fn offers_layers(&self, settings: &Settings) -> bool {
-        !settings.view.tools.are_few(self.unattended)
+        self.worlds.shown() == Mode::Mountain && !settings.view.tools.are_few(self.unattended)
     }
 
     /// A side does something that has no control.
@@ -254,7 +225,7 @@ impl Table {
             side: Some(side),
             ..Command::new(action)
         };
-        self.session.send(Vec::new(), vec![command], self.now_us);
+        self.worlds.send(Vec::new(), vec![command], self.now_us);
     }
 
     /// Rectangles of panels, table mm: contacts that land there are the panels'.
@@ -346,13 +317,17 @@ impl Table {
     /// Settings have changed: everything but the land's size follows at once.
     pub(super) fn apply(&mut self, settings: &Settings, now_us: u64) {
         let size_mm = self.map.size_mm();
-        self.instrument
-            .set_params(instrument_params(settings, size_mm, self.unattended));
+        self.instrument.set_params(instrument_params(
+            settings,
+            size_mm,
+            self.unattended,
+            self.worlds.shown(),
+        ));
         self.kiosk
             .set_params(KioskParams::new(&settings.kiosk, self.unattended));
         self.door.set_params(door_params(settings, size_mm));
-        self.grounded = grounded(settings);
-        self.flight = self.grounded.clone();
+        self.eye.apply(settings);
+        self.home = self.mode.unwrap_or(settings.mode);
         let size_px = [self.size_px.x as u32, self.size_px.y as u32];
         self.resize(settings, size_px, now_us);
     }
@@ -361,7 +336,10 @@ impl Table {
     pub(super) fn key(&mut self, key: Key, down: bool, now_us: u64) {
         self.kiosk.stir(millis(now_us));
         self.carry_out(now_us);
-        with_scene!(self, scene => self.instrument.key(key, down, now_us, &scene));
+        {
+            let scene = self.worlds.scene(self.map, self.eye.in_flight(), &self.panels);
+            self.instrument.key(key, down, now_us, &scene);
+        }
         self.carry_out_deeds(now_us);
     }
 
@@ -373,12 +351,12 @@ impl Table {
 
     /// The land is to be saved.
     pub(super) fn save(&mut self) {
-        self.saver.ask(&self.session);
+        self.saver.ask(self.worlds.session());
     }
 
     /// The last minute of contacts is to be saved.
     pub(super) fn save_contacts(&mut self) {
-        self.saver.ask_contacts(&self.session);
+        self.saver.take_contacts(self.worlds.ring_file());
     }
 
     /// Writes the settings, if there is a file for them.
@@ -411,10 +389,11 @@ impl Table {
         self.kiosk.feed(event, now_ms);
         self.carry_out(now_us);
         self.turn_view(now_us);
-        let route = with_scene!(self, scene => self.instrument.feed(event, now_us, &scene));
+        let scene = self.worlds.scene(self.map, self.eye.in_flight(), &self.panels);
+        let route = self.instrument.feed(event, now_us, &scene);
         self.door.feed(event, now_ms);
         match route {
-            Route::Land => self.session.send(vec![*event], Vec::new(), now_us),
+            Route::Land => self.worlds.send(vec![*event], Vec::new(), now_us),
             Route::Control if event.phase == ContactPhase::Down => self.control_presses += 1,
             Route::Panel => self.door.stir(now_ms),
             _ => {}
@@ -430,136 +409,38 @@ impl Table {
         self.kiosk.tick(now_ms);
         self.door.tick(now_ms);
         self.carry_out(now_us);
-        let show = self.show.advance(now_us);
+        let show = self.shows.advance(now_us, &self.worlds);
         if let Some(seed) = show.fresh {
-            self.session.restart(Start::Seed(seed));
+            self.worlds.restart(seed);
         }
         for frame in &show.frames {
-            self.session
-                .send(frame.events.clone(), frame.commands.clone(), now_us);
-            self.seen.extend(frame.events.iter().map(|&event| Seen {
-                event,
-                route: Route::Land,
-            }));
+            self.show_contacts(frame, now_us);
         }
-        with_scene!(self, scene => self.instrument.tick(now_us, &scene));
+        {
+            let scene = self.worlds.scene(self.map, self.eye.in_flight(), &self.panels);
+            self.instrument.tick(now_us, &scene);
+        }
         self.carry_out_deeds(now_us);
-        self.session.advance(now_us);
-        self.session.frame();
+        self.worlds.advance(now_us);
         // (Counts would not do: those of the session before may be in the frame still.)
-        let pushing = |hand: &HandView| matches!(hand.doing, Doing::Pushing { .. });
-        if self.frame().hands.iter().any(pushing) && !self.show.playing() {
+        if self.worlds.pushed() && !self.shows.playing() {
             self.kiosk.pushed(now_ms);
             self.carry_out(now_us);
         }
         self.wishes_fly = show.fly;
         self.turn_view(now_us);
-        self.look(settings, dt_s);
+        self.eye.look(
+            self.worlds.mountain(),
+            (self.map.extent(), self.size_px),
+            self.kiosk.phase() != Phase::Reset,
+            settings,
+            dt_s,
+        );
         self.saver.step(now_us);
-    }
-
-    /// Where the view goes.
-    fn turn_view(&mut self, now_us: u64) {
-        let wish = if !matches!(self.door.phase(), DoorPhase::Shut | DoorPhase::Holding { .. }) {
-            FlightWish::Plan
-        } else if self.show.playing() {
-            if self.wishes_fly {
-                FlightWish::Fly
-            } else {
-                FlightWish::Plan
-            }
-        } else if self.frame().clock.paused
-            || matches!(self.kiosk.phase(), Phase::IdleWarning { .. } | Phase::Reset)
-        {
-            FlightWish::Plan
-        } else {
-            FlightWish::WhenUntouched
-        };
-        self.flight.tick(millis(now_us), wish, self.kiosk.untouched_ms());
-    }
-
-    /// Camera, exaggeration and light of the next picture.
-    fn look(&mut self, settings: &Settings, dt_s: f64) {
-        let aloft = self.flight.amount();
-        if self.focus_land != self.frame().land {
-            // Looked for only where the eye may be needed: when the land has changed.
-            self.focus_land = self.frame().land;
-            self.focus_goal = Focus::of(&self.frame().surface);
-        }
-        let follows = if aloft > 0.0 {
-            1.0 - (-dt_s / FOLLOWS_S).exp()
-        } else {
-            1.0
-        };
-        self.focus = self.focus.towards(&self.focus_goal, follows);
-        let eye = flight(&self.focus, &self.style, self.flight.aloft_s());
-        self.camera = Camera::between(self.map.extent(), self.size_px, &eye, aloft);
-        let lamp_goal = match self.kiosk.phase() {
-            Phase::Reset => 0.0,
-            _ => 1.0,
-        };
-        let eased = if settings.view.reduced_motion {
-            1.0
-        } else {
-            1.0 - (-dt_s / EASE_S).exp()
-        };
-        self.style.lamp += (lamp_goal - self.style.lamp) * eased as f32;
-    }
-
-    /// Does what the circle asks for.
-    fn carry_out(&mut self, now_us: u64) {
-        for effect in self.kiosk.drain() {
-            match effect {
-                Effect::StartShow => self.show.start(),
-                Effect::CancelShow => {
-                    if let Some(frame) = self.show.stop(now_us) {
-                        self.session.send(frame.events.clone(), Vec::new(), now_us);
-                        self.seen.extend(frame.events.iter().map(|&event| Seen {
-                            event,
-                            route: Route::Land,
-                        }));
-                    }
-                }
-                Effect::CancelContacts => {
-                    let mut events = Vec::new();
-                    self.input.cancel_all(&mut events);
-                    for event in &events {
-                        self.session.send(vec![*event], Vec::new(), now_us);
-                        self.seen.push(Seen {
-                            event: *event,
-                            route: Route::Ignored,
-                        });
-                    }
-                    self.instrument.cancel_all();
-                }
-                Effect::FreshLand => {
-                    self.visitors += 1;
-                    self.session.restart(Start::Seed(self.visitors));
-                }
-                Effect::ResetTools => self.instrument.reset(),
-                Effect::ResetView => self.flight = self.grounded.clone(),
-            }
-        }
-        if self.kiosk.phase() == Phase::Reset && !self.in_reset {
-            self.resets += 1;
-        }
-        self.in_reset = self.kiosk.phase() == Phase::Reset;
-    }
-
-    fn carry_out_deeds(&mut self, now_us: u64) {
-        for deed in self.instrument.drain() {
-            match deed {
-                Deed::Command(command) => self.session.send(Vec::new(), vec![command], now_us),
-                Deed::Save { .. } => self.save(),
-                // The instrument remembers what it shows.
-                Deed::Readouts { .. } => {}
-                Deed::Note { side, at } => self.note = Some((side, at)),
-            }
-        }
     }
 }
 
 /// Table time in the milliseconds of the circle.
-fn millis(now_us: u64) -> u64 {
+pub(super) fn millis(now_us: u64) -> u64 {
     now_us / 1000
 }

@@ -6,9 +6,12 @@ use super::graphics::Graphics;
 use super::metrics::Facts;
 use super::table::Table;
 use crate::gesture::contact::Side;
+use crate::gesture::hand::ContactStats;
 use crate::instrument::ControlKind;
 use crate::kiosk::Phase;
-use crate::render::plan_rect;
+use crate::live::{Frame, GlobeFrame};
+use crate::render::{Disc, plan_rect};
+use crate::surface::planet::Grip;
 
 /// Where a fingertip is held in the staff's corner, mm from both edges.
 const FINGERTIP_MM: f64 = 12.0;
@@ -16,36 +19,41 @@ const FINGERTIP_MM: f64 = 12.0;
 impl Table {
     /// Figures of this second.
     pub(super) fn facts(&self, graphics: &Graphics, scale: f32, devices_lost: u32) -> Facts {
-        let frame = self.frame();
-        let heights = &frame.surface.height.data;
         let [width, height] = graphics.size_px();
         let info = &graphics.gpu().info;
         let window = self.input.counts();
-        Facts {
+        let worlds = self.worlds();
+        let facts = Facts {
             phase: phase_name(self.kiosk.phase()),
-            steps: frame.steps,
+            mode: worlds.shown().name(),
             contacts: self.contacts(),
-            contacts_total: frame.contacts.total,
-            hands: frame.hands.len(),
-            pushes: frame.contacts.pushes,
-            taps: frame.contacts.taps,
-            ghosts_dropped: frame.contacts.dropped_ghosts,
-            ignored: frame.contacts.ignored + window.unknown,
-            dead_touches: frame.counts.dead_touches,
+            hands: worlds.hands().len(),
             control_presses: self.control_presses,
             resets: self.resets,
-            panics: frame.panics,
             devices_lost: u64::from(devices_lost),
-            nodes: self.nodes,
             scale,
-            elapsed_yr: frame.clock.elapsed_yr,
-            max_m: heights.iter().copied().fold(f32::NEG_INFINITY, f32::max),
-            min_m: heights.iter().copied().fold(f32::INFINITY, f32::min),
+            elapsed_yr: worlds.clock().elapsed_yr,
             adapter: info.name.clone(),
             backend: info.backend.to_string(),
             width,
             height,
+            ..match worlds.globe() {
+                Some(globe) => of_planet(globe),
+                None => of_mountain(worlds.mountain(), self.nodes),
+            }
+        };
+        Facts {
+            ignored: facts.ignored + window.unknown,
+            ..facts
         }
+    }
+
+    /// Where the planet is in the window, while it is shown.
+    pub(super) fn disc(&self) -> Option<Disc> {
+        let (corner, size) = plan_rect(self.map.extent(), self.size_px);
+        let per_mm = size.x / self.map.size_mm().x;
+        let globe = self.worlds().globe()?;
+        Some(Disc::of(&globe.view, corner, per_mm))
     }
 
     /// Where controls are in the window, when that has changed since this was last asked: for whoever drives the
@@ -84,6 +92,51 @@ impl Table {
                 y_px: (corner + staff * per_mm).y,
             },
         })
+    }
+}
+
+/// What is told of the mountain.
+fn of_mountain(frame: &Frame, nodes: usize) -> Facts {
+    let heights = &frame.surface.height.data;
+    Facts {
+        steps: frame.steps,
+        dead_touches: frame.counts.dead_touches,
+        panics: frame.panics,
+        nodes,
+        max_m: heights.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+        min_m: heights.iter().copied().fold(f32::INFINITY, f32::min),
+        ..of_contacts(&frame.contacts)
+    }
+}
+
+/// What is told of the planet.
+fn of_planet(frame: &GlobeFrame) -> Facts {
+    let planet = &frame.planet;
+    let heights = &planet.elevation_m;
+    let led = planet.plates.iter().filter(|plate| plate.grip == Grip::Led);
+    Facts {
+        steps: frame.steps,
+        panics: frame.panics,
+        nodes: planet.lattice.len(),
+        max_m: heights.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+        min_m: heights.iter().copied().fold(f32::INFINITY, f32::min),
+        plates: planet.plates.len(),
+        plates_led: led.clone().count(),
+        led_deg_per_my: led
+            .map(|plate| plate.omega.length().to_degrees())
+            .fold(0.0, f64::max),
+        ..of_contacts(&frame.contacts)
+    }
+}
+
+fn of_contacts(contacts: &ContactStats) -> Facts {
+    Facts {
+        contacts_total: contacts.total,
+        pushes: contacts.pushes,
+        taps: contacts.taps,
+        ghosts_dropped: contacts.dropped_ghosts,
+        ignored: contacts.ignored,
+        ..Facts::default()
     }
 }
 
@@ -140,6 +193,7 @@ fn kind_name(kind: ControlKind) -> &'static str {
         ControlKind::StartOver => "start_over",
         ControlKind::Readouts => "readouts",
         ControlKind::Save => "save",
+        ControlKind::World => "world",
         ControlKind::FreezeSlice => "freeze_slice",
         ControlKind::CloseSlice => "close_slice",
     }

@@ -35,9 +35,6 @@ const IDLE_LOOK: Duration = Duration::from_millis(100);
 const HARDWARE_MS: f64 = 1000.0 / 60.0;
 /// Frame time aimed at on a software adapter: 20 Hz, above the 15 Hz that sculpting needs.
 const SOFTWARE_MS: f64 = 50.0;
-/// Least time between two lands on a software adapter, s: taking one over costs as much as a frame, and growth makes a
-/// smooth motion of fewer.
-const SOFTWARE_LAND_S: f64 = 0.12;
 /// Frame rate on monitors that do not tell theirs, Hz.
 const REFRESH_HZ: f64 = 60.0;
 /// How often a lost graphics card is looked for before the program gives up and is started anew by its keeper.
@@ -70,10 +67,6 @@ struct Open {
     /// When the next frame is due, s since the program began.
     next_frame_s: f64,
     last_frame_s: f64,
-    shown_land: Option<u64>,
-    /// How old it was, years, and when it was shown, s since the program began.
-    shown_yr: f64,
-    shown_s: f64,
     revivals: u32,
     _watch: Watch,
 }
@@ -123,10 +116,10 @@ impl Program {
             software,
             Arc::clone(&self.layers),
         )?;
-        let (window_heart, session_heart) = (self.heart.clone(), table.session_beats());
+        let (window_heart, sessions) = (self.heart.clone(), table.worlds().pulse());
         let watch = Watch::over(vec![
             ("the window", Box::new(move || window_heart.beats())),
-            ("the session", Box::new(move || session_heart.beats())),
+            ("the session", Box::new(sessions)),
         ])
         .map_err(|error| AppError::Other(format!("no thread for the watch: {error}")))?;
         let hud = Hud::new(self.metrics.writes());
@@ -145,9 +138,6 @@ impl Program {
             modifiers: ModifiersState::default(),
             next_frame_s: 0.0,
             last_frame_s: 0.0,
-            shown_land: None,
-            shown_yr: 0.0,
-            shown_s: f64::NEG_INFINITY,
             revivals: 0,
             _watch: watch,
         };
@@ -238,15 +228,7 @@ impl Open {
         let dt_s = (now_s - self.last_frame_s).clamp(0.0, 0.25);
         self.table.step(settings, now_us, dt_s);
         let size_px = self.graphics.size_px();
-        let land = self.table.frame().land;
-        let rests = self.graphics.gpu().is_software() && now_s - self.shown_s < SOFTWARE_LAND_S;
-        if self.shown_land != Some(land) && !rests {
-            self.shown_s = now_s;
-            let surface = &self.table.frame().surface;
-            self.graphics.show(surface, surface.elapsed_yr < self.shown_yr);
-            self.shown_land = Some(land);
-            self.shown_yr = surface.elapsed_yr;
-        }
+        self.graphics.follow(self.table.worlds(), now_s);
         let run = self
             .hud
             .run(&mut self.table, settings, metrics.health(), size_px, now_s);
@@ -257,8 +239,9 @@ impl Open {
         }
         let shown = self.graphics.draw(
             &Scene {
-                camera: self.table.camera(),
-                style: self.table.style(),
+                camera: self.table.eye().camera(),
+                style: self.table.eye().style(),
+                disc: self.table.disc(),
                 dt_s: dt_s as f32,
             },
             run.overlay,
@@ -357,7 +340,6 @@ impl Open {
         }
         self.graphics = graphics?;
         self.hud.forget_textures();
-        self.shown_land = None;
         Ok(())
     }
 

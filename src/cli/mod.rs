@@ -4,6 +4,7 @@ mod bench;
 mod console;
 mod erode;
 mod failure;
+mod globe;
 mod import;
 mod output;
 #[cfg(feature = "app")]
@@ -53,6 +54,8 @@ enum Command {
     Kiosk(TableArgs),
     /// Play gesture files (none: the built-in session) through the same code as the table, without a display.
     Replay(ReplayArgs),
+    /// Let a planet of moving plates grow older: a random one, or one from two images.
+    Planet(PlanetArgs),
     /// Erode a terrain in batch: uplift in, eroded land out.
     Erode(ErodeArgs),
     /// Turn a recording of another tool (evemu, multi-touch protocol B) into a gesture file.
@@ -136,7 +139,7 @@ struct Common {
     /// Threads to compute with; the results are the same bits for any number (default: all cores).
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Nodes of the terrain (default: the file's, else 60000).
+    /// Nodes of the terrain, samples of a planet (default: the file's, else 60000).
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
     nodes: Option<u32>,
     /// Pixels along the width of pictures and height maps, such as 1009, 2017, 4033, 8129 or a power of two.
@@ -153,16 +156,17 @@ struct ReplayArgs {
     files: Vec<PathBuf>,
     #[command(flatten)]
     common: Common,
-    /// Model years that the world runs on after the last push (default: the file's, else 5e6).
+    /// Model years that the world runs on after the last push (default: the file's, else 5e6, and 20e6 on a globe).
     #[arg(long, allow_negative_numbers = true)]
     years: Option<f64>,
     /// Rock under the land: a preset (plain, jura, zagros, andes, digne, …), or a TOML file.
     #[arg(long, value_name = "NAME|FILE", default_value = "plain")]
     layers: String,
-    /// Use the rules of the paper instead of Orogen's own defaults (no rest weight, tapers or rifts).
+    /// Use the rules of the papers instead of Orogen's own defaults (no rest weight, tapers or rifts; on a globe the
+    /// printed constants).
     #[arg(long)]
     paper: bool,
-    /// Also draw a picture every N erosion steps, into `frames/`.
+    /// Also draw a picture every N erosion steps, into `frames/`; on a globe a map every N My, into `history/`.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     every: Option<u32>,
     /// Whether the crust floats: it sinks under a range, and rises where it is eroded.
@@ -175,6 +179,52 @@ struct ReplayArgs {
     /// slice.svg and slice.png; may be given several times.
     #[arg(long = "slice", value_name = "X0,Y0,X1,Y1", value_parser = parse_ends, allow_hyphen_values = true)]
     slices: Vec<[DVec2; 2]>,
+}
+
+#[derive(Debug, Args)]
+struct PlanetArgs {
+    #[command(flatten)]
+    common: Common,
+    /// Plates of a random planet.
+    #[arg(long, value_name = "N", default_value_t = 40, conflicts_with = "elevation")]
+    plates: u32,
+    /// Share of a random planet that is continental crust, 0 to 1; some of it lies below the sea.
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 0.3,
+        conflicts_with = "elevation"
+    )]
+    continental: f64,
+    /// Heights to begin with: an equirectangular image twice as wide as high (EXR in metres, or PNG as --metres says).
+    #[arg(long, value_name = "IMAGE", requires = "plate_colours")]
+    elevation: Option<PathBuf>,
+    /// Plates to begin with: the same, one colour for each plate.
+    #[arg(long, value_name = "IMAGE", requires = "elevation")]
+    plate_colours: Option<PathBuf>,
+    /// Heights of black and of white in a PNG of heights, metres.
+    #[arg(long, value_name = "BLACK,WHITE", default_value = "-10000,10000", value_parser = globe::metres, allow_hyphen_values = true)]
+    metres: globe::Metres,
+    /// Model years.
+    #[arg(long, default_value_t = 100e6, allow_negative_numbers = true)]
+    years: f64,
+    /// Also draw a map every N My, into `history/`.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    every: Option<u32>,
+    /// Use the constants of the paper as printed instead of Orogen's own.
+    #[arg(long)]
+    paper: bool,
+    /// How the sea floor sinks as it grows older (default: gdh1, with --paper damping).
+    #[arg(long, value_enum)]
+    sea_floor: Option<SeaFloorChoice>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SeaFloorChoice {
+    /// By plate cooling (Stein and Stein 1992).
+    Gdh1,
+    /// By the paper's damping towards the depth of trenches.
+    Damping,
 }
 
 #[derive(Debug, Args)]
@@ -287,6 +337,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "app")]
         Some(Command::Kiosk(args)) => table::kiosk(&args),
         Some(Command::Replay(args)) => replay::run(&args, console),
+        Some(Command::Planet(args)) => globe::run(&args, console),
         Some(Command::Erode(args)) => erode::run(&args, console),
         Some(Command::Import(args)) => import::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

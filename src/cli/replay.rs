@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings, draw_frame, land_of, write_json};
-use super::{Common, PictureChoice, ReplayArgs, Switch, on_threads, slice};
+use super::{Common, PictureChoice, ReplayArgs, Switch, globe, on_threads, slice};
 use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
@@ -77,11 +77,8 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
             File::open(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
         let file =
             read_gesture(BufReader::new(reader), &path.display().to_string()).map_err(Failure::input)?;
-        if file.header.mode != Mode::Mountain {
-            let path = path.display();
-            return Err(Failure::input(format!(
-                "{path}:1: mode: expected \"mountain\", this version plays no other"
-            )));
+        if file.header.mode == Mode::Globe {
+            globe::check_options(path, args)?;
         }
         sessions.push((stem, file));
     }
@@ -92,7 +89,8 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
             args.slices.len()
         )));
     }
-    for (_, file) in &sessions {
+    let of_mode = |mode| sessions.iter().filter(move |(_, file)| file.header.mode == mode);
+    for (_, file) in of_mode(Mode::Mountain) {
         // A slice that misses the land is refused before the work.
         slice::on_land(&args.slices, plan(file).extent())?;
     }
@@ -102,7 +100,10 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
             for warning in &file.warnings {
                 Console::warn(warning);
             }
-            play(stem, file, args, &pictures, console)?;
+            match file.header.mode {
+                Mode::Mountain => play(stem, file, args, &pictures, console)?,
+                Mode::Globe => globe::play(stem, file, args, console)?,
+            }
         }
         Ok(())
     })

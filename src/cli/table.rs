@@ -24,6 +24,8 @@ const MAX_SIDE: u32 = 8192;
 pub(super) enum ModeChoice {
     /// Mountains on a flat land.
     Mountain,
+    /// Plates on a planet.
+    Globe,
 }
 
 /// Opens the table; where that is not possible, plays the built-in session instead.
@@ -48,7 +50,10 @@ fn options(args: &TableArgs, kiosk: bool) -> Options {
         windowed: args.windowed || args.size.is_some(),
         size: args.size,
         monitor: args.monitor.map(usize::from),
-        mode: args.mode.map(|ModeChoice::Mountain| Mode::Mountain),
+        mode: args.mode.map(|mode| match mode {
+            ModeChoice::Mountain => Mode::Mountain,
+            ModeChoice::Globe => Mode::Globe,
+        }),
         settings: args.settings.clone(),
         layers: args.layers.clone(),
         metrics: args.metrics.clone(),

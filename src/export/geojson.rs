@@ -12,19 +12,44 @@ use crate::surface::{FoldLine, River};
 use crate::units::{Extent, KM};
 
 #[derive(Serialize)]
-struct Collection<P> {
+struct Collection<P, C> {
     r#type: &'static str,
-    frame: &'static str,
+    /// What the coordinates mean where they are not longitude and latitude.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<&'static str>,
     bbox: [f64; 4],
-    features: Vec<Feature<P>>,
+    features: Vec<Feature<P, C>>,
+}
+
+/// A thing with properties; `C` are the coordinates of its geometry.
+#[derive(Serialize)]
+pub(super) struct Feature<P, C> {
+    r#type: &'static str,
+    properties: P,
+    geometry: Geometry<C>,
 }
 
 #[derive(Serialize)]
-struct Feature<P> {
+struct Geometry<C> {
     r#type: &'static str,
-    properties: P,
-    geometry: Line,
+    coordinates: C,
 }
+
+impl<P, C> Feature<P, C> {
+    /// A feature of the geometry type `kind`.
+    pub(super) fn new(properties: P, kind: &'static str, coordinates: C) -> Self {
+        Self {
+            r#type: "Feature",
+            properties,
+            geometry: Geometry {
+                r#type: kind,
+                coordinates,
+            },
+        }
+    }
+}
+
+type Line = Vec<[f64; 2]>;
 
 #[derive(Serialize)]
 struct RiverProperties {
@@ -32,12 +57,6 @@ struct RiverProperties {
     length_km: f64,
     /// Per vertex, downstream.
     drainage_km2: Vec<f64>,
-}
-
-#[derive(Serialize)]
-struct Line {
-    r#type: &'static str,
-    coordinates: Vec<[f64; 2]>,
 }
 
 /// Writes rivers as a feature collection of lines, with Strahler's order, the length, and the drainage area at each
@@ -85,34 +104,39 @@ pub fn write_folds(out: impl Write, extent: Extent, folds: &[FoldLine]) -> io::R
     write_lines(out, extent, features.collect())
 }
 
-fn feature<P>(properties: P, line: impl Iterator<Item = DVec2>) -> Feature<P> {
-    Feature {
-        r#type: "Feature",
-        properties,
-        geometry: Line {
-            r#type: "LineString",
-            coordinates: line
-                .map(|p| [rounded(p.x / KM, 1e4), rounded(p.y / KM, 1e4)])
-                .collect(),
-        },
-    }
+fn feature<P>(properties: P, line: impl Iterator<Item = DVec2>) -> Feature<P, Line> {
+    let points = line.map(|p| [rounded(p.x / KM, 1e4), rounded(p.y / KM, 1e4)]);
+    Feature::new(properties, "LineString", points.collect())
 }
 
 fn write_lines(
-    mut out: impl Write,
+    out: impl Write,
     extent: Extent,
-    features: Vec<Feature<impl Serialize>>,
+    features: Vec<Feature<impl Serialize, Line>>,
+) -> io::Result<()> {
+    let frame = "plan kilometres, x east, y north, origin south-west corner";
+    let bbox = [0.0, 0.0, extent.width / KM, extent.height / KM];
+    write_collection(out, Some(frame), bbox, features)
+}
+
+/// Writes a feature collection on one line. `frame` says what the coordinates are where they are not degrees.
+pub(super) fn write_collection(
+    mut out: impl Write,
+    frame: Option<&'static str>,
+    bbox: [f64; 4],
+    features: Vec<Feature<impl Serialize, impl Serialize>>,
 ) -> io::Result<()> {
     let collection = Collection {
         r#type: "FeatureCollection",
-        frame: "plan kilometres, x east, y north, origin south-west corner",
-        bbox: [0.0, 0.0, extent.width / KM, extent.height / KM],
+        frame,
+        bbox,
         features,
     };
     serde_json::to_writer(&mut out, &collection)?;
     out.write_all(b"\n")
 }
 
-fn rounded(value: f64, steps_per_unit: f64) -> f64 {
+/// The nearest number with so many steps per unit.
+pub(super) fn rounded(value: f64, steps_per_unit: f64) -> f64 {
     (value * steps_per_unit).round() / steps_per_unit
 }

@@ -40,6 +40,50 @@ pub struct Sidecar {
     pub r16: String,
 }
 
+/// Values as 16-bit steps over their own range.
+pub(super) struct Steps {
+    /// One per value.
+    pub(super) values: Vec<u16>,
+    /// The value of step 0.
+    pub(super) low: f64,
+    /// The value of step 65535.
+    pub(super) high: f64,
+}
+
+impl Steps {
+    /// Rounds to the nearest step. Values that are all alike get a range of 1.
+    pub(super) fn new(values: &[f32]) -> io::Result<Self> {
+        if values.is_empty() {
+            return Err(invalid("16-bit heights: there are none"));
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &value in values {
+            if !value.is_finite() {
+                return Err(invalid("16-bit heights: a height is not a finite number"));
+            }
+            (low, high) = (low.min(f64::from(value)), high.max(f64::from(value)));
+        }
+        if high <= low {
+            high = low + 1.0;
+        }
+        let steps_per_unit = 65535.0 / (high - low);
+        let step = |&value: &f32| ((f64::from(value) - low) * steps_per_unit).round() as u16;
+        Ok(Self {
+            values: values.iter().map(step).collect(),
+            low,
+            high,
+        })
+    }
+}
+
+/// Writes steps as a 16-bit grey PNG of `(width, height)` pixels.
+pub(super) fn write_png(out: impl Write, (width, height): (usize, usize), steps: &[u16]) -> io::Result<()> {
+    let bytes: Vec<u8> = steps.iter().flat_map(|step| step.to_ne_bytes()).collect();
+    PngEncoder::new_with_quality(out, CompressionType::Default, FilterType::Adaptive)
+        .write_image(&bytes, width as u32, height as u32, image::ExtendedColorType::L16)
+        .map_err(io::Error::other)
+}
+
 impl Height16 {
     /// Rounds a height raster to 16 bits over its own range; the error is at most half a step. Flat land is given
     /// a range of one metre, so that the steps still have a meaning.
@@ -47,27 +91,17 @@ impl Height16 {
     /// # Errors
     /// Where the raster has no pixels, or a height is not a finite number.
     pub fn new(heights: &Raster) -> io::Result<Self> {
-        let mut range = (f64::INFINITY, f64::NEG_INFINITY);
-        for &h in &heights.data {
-            if !h.is_finite() {
-                return Err(invalid("16-bit heights: a height is not a finite number"));
-            }
-            range = (range.0.min(f64::from(h)), range.1.max(f64::from(h)));
+        if heights.data.len() != heights.width * heights.height {
+            return Err(invalid("16-bit heights: values and size disagree"));
         }
-        if heights.data.is_empty() || heights.data.len() != heights.width * heights.height {
-            return Err(invalid(
-                "16-bit heights: values and size disagree, or there are none",
-            ));
-        }
-        let (low, high) = (range.0, if range.1 > range.0 { range.1 } else { range.0 + 1.0 });
-        let steps_per_metre = 65535.0 / (high - low);
+        let Steps {
+            values: steps,
+            low,
+            high,
+        } = Steps::new(&heights.data)?;
         let cell = heights.cell() / KM;
         Ok(Self {
-            steps: heights
-                .data
-                .iter()
-                .map(|&h| ((f64::from(h) - low) * steps_per_metre).round() as u16)
-                .collect(),
+            steps,
             sidecar: Sidecar {
                 width: heights.width,
                 height: heights.height,
@@ -86,15 +120,7 @@ impl Height16 {
     /// # Errors
     /// Where `out` fails.
     pub fn write_png(&self, out: impl Write) -> io::Result<()> {
-        let bytes: Vec<u8> = self.steps.iter().flat_map(|step| step.to_ne_bytes()).collect();
-        PngEncoder::new_with_quality(out, CompressionType::Default, FilterType::Adaptive)
-            .write_image(
-                &bytes,
-                self.sidecar.width as u32,
-                self.sidecar.height as u32,
-                image::ExtendedColorType::L16,
-            )
-            .map_err(io::Error::other)
+        write_png(out, (self.sidecar.width, self.sidecar.height), &self.steps)
     }
 
     /// Bare little-endian steps without a header.

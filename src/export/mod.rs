@@ -8,8 +8,10 @@ mod digest;
 pub mod exr;
 pub mod geojson;
 pub mod glb;
+mod gltf;
 pub mod height16;
 mod out_dir;
+pub mod planet;
 pub mod ply;
 pub mod svg;
 

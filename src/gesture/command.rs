@@ -25,13 +25,19 @@
 //! | `close_slice` | `true` | the cross-section and its notes go |
 //! | `view` | `{"lon": degrees, "lat": degrees, "zoom": factor}` | the globe is looked at from there |
 //! | `earth` | `true` | the globe starts from Earth |
+//! | `planet` | `{"plates": 1 to 512, "continental": 0 to 1, "seed": whole number}` | the globe starts from such a random planet |
+//! | `cut` | 2 to 64 places `[[lat, lon], …]`, degrees | the plate below this line tears along it |
+//! | `paint` | `{"at": [lat, lon], "radius": 0 to 90 degrees, "crust": "continent"` or `"ocean"}` | the crust around the place becomes this |
 //! | `scrub` | 0 to 1e9 | the land comes back as it was after these years, and the clock stops |
 //!
 //! Beside its word an object may name the `side` (`"north"`, `"south"`) and the `contact` (the id in the same file)
 //! it came from. Words, tools and modes that are not in the table belong to a newer program: they are ignored and
 //! counted. A word of the table with a value of the wrong kind is refused.
 
+mod globe;
 mod write;
+
+pub use globe::{MAX_BRUSH_DEG, MAX_PLATES, Paint, Place};
 
 use std::sync::Arc;
 
@@ -145,6 +151,29 @@ pub enum Action {
     },
     /// Start the globe from Earth.
     Earth,
+    /// Start the globe from a random planet.
+    Planet {
+        /// Number of plates, 1 to [`MAX_PLATES`].
+        plates: u32,
+        /// Share of the sphere that is continental, 0 to 1.
+        continental: f64,
+        /// Everything random follows from it.
+        seed: u64,
+    },
+    /// Tear the plate below a line.
+    Cut {
+        /// [`PATH_POINTS`] of them.
+        path: Vec<Place>,
+    },
+    /// Make crust continental or oceanic.
+    Paint {
+        /// Middle of the stroke.
+        at: Place,
+        /// Radius, degrees, 0 to [`MAX_BRUSH_DEG`].
+        radius_deg: f64,
+        /// What it becomes.
+        paint: Paint,
+    },
     /// Bring back the land as it was after these years, 0 to [`MAX_YEARS`], and stop the clock.
     Scrub(f64),
 }
@@ -335,8 +364,13 @@ fn parse_word(word: &str, value: &Value, field: &str) -> Result<Option<Action>, 
         },
         "label_slice" => Some(parse_label(value, field)?),
         "close_slice" => pressed(Action::CloseSlice)?,
-        "view" => Some(parse_view(value, field)?),
+        "view" => Some(globe::parse_view(value, field)?),
         "earth" => pressed(Action::Earth)?,
+        "planet" => Some(globe::parse_planet(value, field)?),
+        "cut" => Some(Action::Cut {
+            path: globe::parse_line(value, field)?,
+        }),
+        "paint" => Some(globe::parse_paint(value, field)?),
         "scrub" => Some(Action::Scrub(number(value, field, "years", 0.0, MAX_YEARS)?)),
         _ => None,
     })
@@ -406,18 +440,6 @@ fn parse_label(value: &Value, field: &str) -> Result<Action, Expected> {
     Ok(Action::LabelSlice { at, text })
 }
 
-fn parse_view(value: &Value, field: &str) -> Result<Action, Expected> {
-    let map = object(value, field, "{\"lon\":degrees,\"lat\":degrees,\"zoom\":factor}")?;
-    let angle = |key, limit: f64| {
-        let (value, path) = member(map, key, field, "degrees")?;
-        number(value, &path, "degrees", -limit, limit)
-    };
-    let (lon, lat) = (angle("lon", 180.0)?, angle("lat", 90.0)?);
-    let (value, path) = member(map, "zoom", field, "a factor")?;
-    let zoom = number(value, &path, "a factor", ZOOM_RANGE.0, ZOOM_RANGE.1)?;
-    Ok(Action::View { lon, lat, zoom })
-}
-
 impl Action {
     /// The word of the table.
     pub fn word(&self) -> &'static str {
@@ -443,6 +465,9 @@ impl Action {
             Self::CloseSlice => "close_slice",
             Self::View { .. } => "view",
             Self::Earth => "earth",
+            Self::Planet { .. } => "planet",
+            Self::Cut { .. } => "cut",
+            Self::Paint { .. } => "paint",
             Self::Scrub(_) => "scrub",
         }
     }

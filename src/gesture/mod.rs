@@ -3,6 +3,7 @@
 //! * [`contact`]: what every source reports; [`admission`] puts it in order and keeps nonsense out.
 //! * [`stroke`]: contacts that are fingers (palms, ghosts, flicker and stuck contacts end here).
 //! * [`hand`]: fingers that belong together, and what they do ([`event`]), by the best rigid motion ([`rigid`]).
+//! * [`pole`]: the same on the sphere, by the best Euler pole.
 //! * [`command`]: what visitors do outside the contacts; [`mod@file`]: all of it, written down.
 //!
 //! Everything here is in table millimetres, x right, y down, and session microseconds. No clock is read and no file
@@ -18,6 +19,7 @@ pub mod hand;
 pub mod json;
 mod leg;
 pub mod params;
+pub mod pole;
 pub mod rigid;
 mod stage;
 pub mod stroke;

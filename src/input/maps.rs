@@ -169,31 +169,16 @@ pub fn read_map(path: &Path, kind: MapKind) -> Result<Raster, MapError> {
 }
 
 fn read(path: &Path, kind: MapKind) -> Result<Raster, MapFault> {
-    let length = std::fs::metadata(path)?.len();
-    if length > MAX_FILE_BYTES {
-        return Err(MapFault::FileTooLarge(length));
-    }
-    let bytes = std::fs::read(path)?;
-    let mut raster = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        decode_exr(&bytes, kind)?
-    } else if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-        let mut raster = decode_png(&bytes)?;
-        scale_png(path, kind, &mut raster)?;
-        raster
-    } else {
-        return Err(MapFault::UnknownFormat);
+    let bytes = file_bytes(path)?;
+    let mut raster = match format_of(&bytes)? {
+        MapFormat::Exr => decode_exr(&bytes, kind)?,
+        MapFormat::Png => {
+            let mut raster = decode_png(&bytes)?;
+            scale_png(path, kind, &mut raster)?;
+            raster
+        }
     };
-    let (low, high) = kind.range();
-    if let Some(i) = raster.data.iter().position(|v| !(low..=high).contains(v)) {
-        return Err(MapFault::Value {
-            value: raster.data[i],
-            column: i % raster.width,
-            row: i / raster.width,
-            what: kind.name(),
-            low,
-            high,
-        });
-    }
+    check_values(&raster, kind.name(), kind.range())?;
     // −0 and 0 are one value; files should not decide which.
     for value in &mut raster.data {
         *value += 0.0;
@@ -201,7 +186,55 @@ fn read(path: &Path, kind: MapKind) -> Result<Raster, MapFault> {
     Ok(raster)
 }
 
-fn check_size(width: u64, height: u64, channels: u64) -> Result<(), MapFault> {
+/// What the file holds, unless it is too large.
+pub(super) fn file_bytes(path: &Path) -> Result<Vec<u8>, MapFault> {
+    let length = std::fs::metadata(path)?.len();
+    if length > MAX_FILE_BYTES {
+        return Err(MapFault::FileTooLarge(length));
+    }
+    Ok(std::fs::read(path)?)
+}
+
+/// Formats of maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MapFormat {
+    /// `OpenEXR`.
+    Exr,
+    /// PNG.
+    Png,
+}
+
+/// The format by its signature.
+pub(super) fn format_of(bytes: &[u8]) -> Result<MapFormat, MapFault> {
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        Ok(MapFormat::Exr)
+    } else if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+        Ok(MapFormat::Png)
+    } else {
+        Err(MapFault::UnknownFormat)
+    }
+}
+
+/// Refuses values outside a range, and what is no number.
+pub(super) fn check_values(
+    raster: &Raster,
+    what: &'static str,
+    (low, high): (f32, f32),
+) -> Result<(), MapFault> {
+    match raster.data.iter().position(|v| !(low..=high).contains(v)) {
+        None => Ok(()),
+        Some(i) => Err(MapFault::Value {
+            value: raster.data[i],
+            column: i % raster.width,
+            row: i / raster.width,
+            what,
+            low,
+            high,
+        }),
+    }
+}
+
+pub(super) fn check_size(width: u64, height: u64, channels: u64) -> Result<(), MapFault> {
     let samples = width
         .checked_mul(height)
         .and_then(|pixels| pixels.checked_mul(channels));
@@ -240,7 +273,8 @@ fn luminance(rgb: [f32; 3]) -> f32 {
     }
 }
 
-fn decode_exr(bytes: &[u8], kind: MapKind) -> Result<Raster, MapFault> {
+/// Values of the channel that `kind` looks for.
+pub(super) fn decode_exr(bytes: &[u8], kind: MapKind) -> Result<Raster, MapFault> {
     let broken = |error: exr::error::Error| MapFault::Broken {
         format: "EXR",
         reason: error.to_string(),
@@ -299,7 +333,7 @@ fn decode_exr(bytes: &[u8], kind: MapKind) -> Result<Raster, MapFault> {
 }
 
 /// Grey values from 0 (black) to 1 (white).
-fn decode_png(bytes: &[u8]) -> Result<Raster, MapFault> {
+pub(super) fn decode_png(bytes: &[u8]) -> Result<Raster, MapFault> {
     let broken = |error: image::ImageError| MapFault::Broken {
         format: "PNG",
         reason: error.to_string(),

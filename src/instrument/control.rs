@@ -25,6 +25,8 @@ pub enum ControlKind {
     Readouts,
     /// The land is saved; absent on unattended tables.
     Save,
+    /// The other world is shown; `on` while that is the mountain, for the globe is what it offers.
+    World,
     /// The side's cross-section stays as it is (`on`), or follows the land.
     FreezeSlice,
     /// The side's cross-section goes.

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::gesture::command::{Command, Tool};
+use crate::gesture::command::{Command, Mode, Tool};
 use crate::gesture::contact::Side;
 use crate::live::Clock;
 use crate::surface::{Cut, FaultTrace, PlateMark};
@@ -58,6 +58,13 @@ pub enum Deed {
         /// What they are now.
         on: bool,
     },
+    /// The other world is to be shown.
+    World {
+        /// The side that asked.
+        side: Side,
+        /// Which one.
+        mode: Mode,
+    },
     /// The land is to be saved.
     Save {
         /// The side that asked.
@@ -85,6 +92,8 @@ pub enum Key {
     Readouts,
     /// As [`super::ControlKind::Save`].
     Save,
+    /// As [`super::ControlKind::World`].
+    World,
     /// One step faster.
     Faster,
     /// One step slower.

@@ -60,7 +60,12 @@ const GROUPS: [&[ControlKind]; 3] = [
         ControlKind::Undo,
     ],
     &[ControlKind::PlayPause, ControlKind::Speed],
-    &[ControlKind::StartOver, ControlKind::Readouts, ControlKind::Save],
+    &[
+        ControlKind::StartOver,
+        ControlKind::Readouts,
+        ControlKind::Save,
+        ControlKind::World,
+    ],
 ];
 
 /// A control in its place, table mm.
@@ -147,11 +152,13 @@ pub(super) fn layout(size_mm: DVec2, offered: impl Fn(ControlKind) -> bool) -> L
         }
         x += (GROUP_GAP - GAP) * size;
     }
-    south.push((
-        ControlKind::Scrub,
-        DVec2::new(size_mm.x / 2.0, y - (1.0 + GAP) * size),
-        DVec2::new(SLIDER * size / 2.0, size / 2.0),
-    ));
+    if offered(ControlKind::Scrub) {
+        south.push((
+            ControlKind::Scrub,
+            DVec2::new(size_mm.x / 2.0, y - (1.0 + GAP) * size),
+            DVec2::new(SLIDER * size / 2.0, size / 2.0),
+        ));
+    }
     let paper = south_paper(size_mm, size, row * size);
     // In the sheet's strip, from its right end.
     let strip_y = paper.centre_mm.y - paper.half_size_mm.y + paper.strip_mm / 2.0;
@@ -159,6 +166,7 @@ pub(super) fn layout(size_mm: DVec2, offered: impl Fn(ControlKind) -> bool) -> L
     for (place, kind) in [ControlKind::CloseSlice, ControlKind::FreezeSlice]
         .into_iter()
         .enumerate()
+        .filter(|&(_, kind)| offered(kind))
     {
         let from_right = (0.5 + place as f64 * (1.0 + GAP)) * size;
         south.push((kind, DVec2::new(right - from_right, strip_y), half));

@@ -2,11 +2,12 @@
 
 use super::control::{ControlId, ControlKind, ControlView};
 use super::deed::{Deed, Key, Scene};
+use super::history;
 use super::layout::Placed;
 use super::press::{Finger, Press};
+use super::speed::Speeds;
 use super::table::Instrument;
-use super::{history, speed};
-use crate::gesture::command::{Action, Tool};
+use crate::gesture::command::{Action, Mode, Tool};
 use crate::gesture::contact::Side;
 
 impl Instrument {
@@ -20,9 +21,12 @@ impl Instrument {
             Key::Tool(tool) => ControlKind::Tool(tool),
             Key::Readouts => ControlKind::Readouts,
             Key::Save => ControlKind::Save,
+            Key::World => ControlKind::World,
             Key::StartOver => ControlKind::StartOver,
             Key::Faster | Key::Slower if down => {
-                let pace = speed::stepped(self.clock.pace_yr_per_s, key == Key::Faster);
+                let pace = self
+                    .speeds()
+                    .stepped(self.clock.pace_yr_per_s, key == Key::Faster);
                 return self.command(Some(Action::Speed(pace)), Side::South, None);
             }
             Key::Back | Key::Forward if down => {
@@ -81,10 +85,17 @@ impl Instrument {
             }
             ControlKind::PlayPause if self.clock.paused => Action::Play,
             ControlKind::PlayPause => Action::Pause,
-            ControlKind::Speed => Action::Speed(speed::next(self.clock.pace_yr_per_s)),
+            ControlKind::Speed => Action::Speed(self.speeds().next(self.clock.pace_yr_per_s)),
             ControlKind::StartOver => Action::StartOver,
             ControlKind::Readouts => return self.toggle_readouts(side),
             ControlKind::Save => return self.deeds.push(Deed::Save { side }),
+            ControlKind::World => {
+                let mode = match self.params.mode {
+                    Mode::Mountain => Mode::Globe,
+                    Mode::Globe => Mode::Mountain,
+                };
+                return self.deeds.push(Deed::World { side, mode });
+            }
             ControlKind::FreezeSlice => Action::FreezeSlice(self.cuts[side as usize] != Some(true)),
             ControlKind::CloseSlice => Action::CloseSlice,
             ControlKind::Undo | ControlKind::Scrub => return,
@@ -114,6 +125,10 @@ impl Instrument {
         }
     }
 
+    fn speeds(&self) -> &'static Speeds {
+        Speeds::of(self.params.mode)
+    }
+
     fn view(&self, placed: &Placed, glow: f64) -> ControlView {
         let ControlId(side, kind) = placed.id;
         let press = self.presses.get(&placed.id);
@@ -130,6 +145,7 @@ impl Instrument {
                 ControlKind::Tool(tool) => self.tool(side) == tool,
                 ControlKind::PlayPause => !self.clock.paused,
                 ControlKind::Readouts => self.readouts(side),
+                ControlKind::World => self.params.mode == Mode::Mountain,
                 ControlKind::FreezeSlice => self.cuts[side as usize] == Some(true),
                 _ => false,
             },
@@ -139,7 +155,7 @@ impl Instrument {
                 _ => true,
             },
             value: match kind {
-                ControlKind::Speed => speed::place(self.clock.pace_yr_per_s),
+                ControlKind::Speed => self.speeds().place(self.clock.pace_yr_per_s),
                 // While a finger drags it, the slider is where the finger is: the land follows.
                 ControlKind::Scrub => {
                     press.map_or_else(|| history::place(&self.clock), |p| placed.along(p.at))

@@ -8,7 +8,7 @@ use super::edit::Edit;
 use super::fold::{Drawn, Stroke};
 use super::press::{Finger, Press};
 use super::table::Instrument;
-use crate::gesture::command::{Action, Tool};
+use crate::gesture::command::{Action, Mode, Tool};
 use crate::gesture::contact::{Contact, ContactKey, Side};
 
 /// A half of the table that nobody has touched for so long is anybody's, µs: who stands alone at the table reaches across
@@ -84,6 +84,9 @@ impl Instrument {
         }
         if let Some(paper) = self.papers().find(|paper| paper.holds(at)) {
             return Owner::Paper(paper.side, at);
+        }
+        if self.params.mode == Mode::Globe {
+            return Owner::Land;
         }
         let (tool, side) = self.tool_at(at);
         if tool == Tool::Push || tool == Tool::View {

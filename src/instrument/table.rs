@@ -11,7 +11,7 @@ use super::layout::{Layout, Placed, layout};
 use super::owner::{Held, Owner};
 use super::press::Press;
 use super::slice::Section;
-use crate::gesture::command::{Action, Command, Tool};
+use crate::gesture::command::{Action, Command, Mode, Tool};
 use crate::gesture::contact::{ContactEvent, ContactKey, Phase, Side, Source};
 use crate::gesture::params::GestureParams;
 use crate::live::Clock;
@@ -38,6 +38,8 @@ pub struct InstrumentParams {
     pub unattended: bool,
     /// The fold tool is offered.
     pub folds: bool,
+    /// The world that is shown. The globe has no tools but hands.
+    pub mode: Mode,
     /// Figures are shown from the start.
     pub readouts: bool,
     /// What is a palm, and what is a motion.
@@ -46,9 +48,14 @@ pub struct InstrumentParams {
 
 impl InstrumentParams {
     fn layout(&self) -> Layout {
+        let flat = self.mode == Mode::Mountain;
         layout(self.size_mm, |kind| match kind {
-            ControlKind::Save => !self.unattended,
-            ControlKind::Tool(Tool::Fold) => self.folds,
+            ControlKind::Save => flat && !self.unattended,
+            ControlKind::Tool(Tool::Fold) => flat && self.folds,
+            ControlKind::Tool(_)
+            | ControlKind::Scrub
+            | ControlKind::FreezeSlice
+            | ControlKind::CloseSlice => flat,
             _ => true,
         })
     }

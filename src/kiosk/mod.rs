@@ -2,7 +2,7 @@
 //!
 //! * [`Kiosk`]: a fresh table plays a show (attract); the first touch ends it on fresh land (invite); the first push
 //!   begins the visit (play); when nobody is there a warning counts down, and the land is reset.
-//! * [`Show`]: the gesture files of attract, as contacts; [`Hint`]: ghost hands of the two first gestures;
+//! * [`Show`]: the gesture files of attract, as contacts; [`Orbit`]: the same for the planet; [`Hint`]: ghost hands of the two first gestures;
 //!   [`Flight`]: how far the view is from the plan.
 //! * [`StaffDoor`]: a corner that is held, a PIN, and the staff's menu.
 //!
@@ -14,6 +14,7 @@ mod door;
 mod flight;
 mod hint;
 mod lived;
+mod orbit;
 mod presence;
 mod show;
 
@@ -21,4 +22,5 @@ pub use circle::{Effect, Kiosk, KioskParams, Phase};
 pub use door::{DoorParams, DoorPhase, StaffDoor};
 pub use flight::{Flight, FlightWish};
 pub use hint::{GhostHand, Hint, Lesson};
+pub use orbit::Orbit;
 pub use show::{Show, ShowStep};

@@ -14,10 +14,16 @@ const CHUNK: usize = 16_384;
 
 /// A frame that circulates, and what it was filled from last.
 #[derive(Clone, Debug)]
-pub(super) struct Slot {
+pub struct Slot {
     pub(super) frame: Frame,
     /// The water of this step is drawn in it.
     water: u64,
+}
+
+impl AsRef<Frame> for Slot {
+    fn as_ref(&self) -> &Frame {
+        &self.frame
+    }
 }
 
 /// Draws the session into frames, and draws again only what has changed.

@@ -15,6 +15,9 @@
 mod chart;
 mod exchange;
 mod frame;
+mod globe;
+mod mountain;
+mod play;
 mod ring;
 #[cfg(test)]
 mod tests;
@@ -28,44 +31,21 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
 
 pub use frame::{Clock, Frame};
+pub use globe::{Globe, GlobeFrame, LiveGlobeParams};
+pub use mountain::{LiveParams, Mountain, Start};
+pub use play::{Play, Published};
 pub use ring::{RING_BYTES, RING_US, Ring};
 
 use crate::gesture::command::Command;
 use crate::gesture::contact::ContactEvent;
-use crate::rock::Stratigraphy;
-use crate::sim::{Checkpoint, SimParams, World};
-use crate::units::PlanMap;
-use chart::{Chart, Slot};
 use exchange::{Reader, exchange};
 use worker::{Message, Worker};
 
-/// What a session needs to know.
-#[derive(Clone, Debug)]
-pub struct LiveParams {
-    /// How the table lies on the land.
-    pub map: PlanMap,
-    /// Nodes of the land.
-    pub nodes: usize,
-    /// Seed of the first land.
-    pub seed: u64,
-    /// The rock under every fresh land.
-    pub layers: Arc<Stratigraphy>,
-    /// Parameters of the session itself.
-    pub sim: SimParams,
-    /// Columns of the rasters in a frame; cells are square.
-    pub raster_width: usize,
-    /// Threads that compute; 0 takes one per core.
-    pub threads: usize,
-}
+/// The mountain's session.
+pub type Session = Live<Mountain>;
 
-/// What a session begins again with.
-#[derive(Clone, Debug)]
-pub enum Start {
-    /// The land of a seed. The seed that the session had is quicker than another.
-    Seed(u64),
-    /// A land that was kept. Its table must be that of the session.
-    World(Box<World>),
-}
+/// The planet's session.
+pub type GlobeSession = Live<Globe>;
 
 /// Signs of life, for a thread that watches.
 #[derive(Debug, Default)]
@@ -74,23 +54,23 @@ struct Vitals {
     slowed_us: AtomicU64,
 }
 
-/// A session on a thread of its own. Dropping it ends the thread.
+/// A session of a world on a thread of its own. Dropping it ends the thread.
 #[derive(Debug)]
-pub struct Session {
-    messages: Sender<Message>,
-    frames: Reader<Slot>,
+pub struct Live<P: Play> {
+    messages: Sender<Message<P>>,
+    frames: Reader<P::Slot>,
     vitals: Arc<Vitals>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Session {
-    /// Starts the thread and waits until the land is there: [`Self::frame`] shows it at once.
+impl<P: Play> Live<P> {
+    /// Starts the thread and waits until the world is there: [`Self::frame`] shows it at once.
     ///
     /// # Errors
-    /// When the land cannot be laid out ([`io::ErrorKind::InvalidInput`]), or threads cannot be started.
-    pub fn spawn(params: LiveParams) -> io::Result<Self> {
+    /// When the world cannot be made ([`io::ErrorKind::InvalidInput`]), or threads cannot be started.
+    pub fn spawn(params: P::Params) -> io::Result<Self> {
         let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(params.threads)
+            .num_threads(P::threads(&params))
             .thread_name(|index| format!("orogen-sim-{index}"))
             .build()
             .map_err(io::Error::other)?;
@@ -101,11 +81,9 @@ impl Session {
             let vitals = Arc::clone(&vitals);
             move || {
                 let made = pool.install(|| -> io::Result<_> {
-                    let first = worker::new_world(&params, params.seed)
-                        .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
-                    let chart = Chart::new(&first, params.raster_width);
-                    let (writer, reader) = exchange([(); 3].map(|()| chart.slot()));
-                    let mut worker = Worker::new(params, vitals, first, chart, writer);
+                    let world = P::open(params)?;
+                    let (writer, reader) = exchange([(); 3].map(|()| world.slot()));
+                    let mut worker = Worker::new(world, vitals, writer);
                     worker.publish();
                     Ok((worker, reader))
                 });
@@ -122,7 +100,7 @@ impl Session {
         })?;
         let frames = readiness
             .recv()
-            .map_err(|_| io::Error::other("the session's thread ended before its land was there"))??;
+            .map_err(|_| io::Error::other("the session's thread ended before its world was there"))??;
         Ok(Self {
             messages,
             frames,
@@ -143,24 +121,24 @@ impl Session {
     }
 
     /// The newest frame. Does not wait.
-    pub fn frame(&mut self) -> &Frame {
-        &self.frames.newest().frame
+    pub fn frame(&mut self) -> &P::Frame {
+        self.frames.newest().as_ref()
     }
 
     /// The frame that [`Self::frame`] returned last: the same for a whole turn of the caller's loop.
-    pub fn current(&self) -> &Frame {
-        &self.frames.current().frame
+    pub fn current(&self) -> &P::Frame {
+        self.frames.current().as_ref()
     }
 
-    /// Begins again for the next visitor: another land, no contacts, session time zero. Input that was handed over before
+    /// Begins again for the next visitor: another world, no contacts, session time zero. Input that was handed over before
     /// and has not been played is forgotten. Does not wait.
-    pub fn restart(&self, start: Start) {
+    pub fn restart(&self, start: P::Start) {
         self.tell(Message::Restart(start));
     }
 
     /// Asks for the session as it is, to be saved or exported elsewhere ([`crate::sim::Sim::resume`]) while this one goes
     /// on. Does not wait; the answer comes once, after the ticks that are being played.
-    pub fn save_world(&self) -> Receiver<Checkpoint> {
+    pub fn save_world(&self) -> Receiver<P::Kept> {
         let (reply, answer) = mpsc::channel();
         self.tell(Message::Save(reply));
         answer
@@ -184,7 +162,7 @@ impl Session {
         self.vitals.slowed_us.load(Ordering::Relaxed)
     }
 
-    fn tell(&self, message: Message) {
+    fn tell(&self, message: Message<P>) {
         // The thread outlives panics; if it has ended all the same, its heartbeat stands still and the watch sees that.
         let _ = self.messages.send(message);
     }
@@ -201,7 +179,7 @@ impl Heartbeat {
     }
 }
 
-impl Drop for Session {
+impl<P: Play> Drop for Live<P> {
     fn drop(&mut self) {
         self.tell(Message::End);
         if let Some(thread) = self.thread.take() {

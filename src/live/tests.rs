@@ -6,8 +6,8 @@ use super::*;
 use crate::gesture::command::{Action, Command};
 use crate::gesture::contact::{Contact, ContactKey, Phase, Source};
 use crate::gesture::file::read_gesture;
-use crate::sim::{Sim, TICK_US};
-use crate::units::DEFAULT_SHORT_SIDE;
+use crate::sim::{Sim, SimParams, TICK_US};
+use crate::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
 /// A session that is driven tick by tick.
 struct Table {

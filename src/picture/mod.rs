@@ -17,6 +17,7 @@ mod lettering;
 pub(crate) mod light;
 mod noise;
 pub(crate) mod paint;
+pub mod planet;
 mod strata;
 mod style;
 pub(crate) mod water;

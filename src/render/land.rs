@@ -5,7 +5,7 @@ use wgpu::util::DeviceExt as _;
 
 use super::camera::{Camera, plan_rect};
 use super::growth::Growth;
-use super::layout::{Air, RINGS, View};
+use super::layout::{Air, RINGS, ROOM, View};
 use super::passes::{self, Pipelines, Sheet, group};
 use super::quality::RenderQuality;
 use crate::gpu::Gpu;
@@ -61,8 +61,6 @@ mod colours {
     pub(super) const MIDDLE: u32 = 0x86_a3d0;
     /// The sky overhead.
     pub(super) const ZENITH: u32 = 0x2f_5190;
-    /// The dark of the room around the plan.
-    pub(super) const TABLE: u32 = 0x14_1618;
 }
 
 /// Tilt at which it is evening: the way down from the plan begins at noon.
@@ -103,7 +101,7 @@ impl LandRenderer {
             horizon: rgb(colours::HORIZON),
             middle: rgb(colours::MIDDLE),
             zenith: rgb(colours::ZENITH),
-            table: rgb(colours::TABLE),
+            table: rgb(ROOM),
         };
         Self {
             quality,
@@ -331,7 +329,7 @@ impl LandRenderer {
 
     /// What is around the plan, as the target takes it.
     fn table_colour(&self) -> wgpu::Color {
-        let hex = colours::TABLE;
+        let hex = ROOM;
         let colour = if self.encodes {
             linear(hex)
         } else {

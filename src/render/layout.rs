@@ -90,8 +90,31 @@ impl Reach {
         wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x2, 2 => Float32x2];
 }
 
+/// As `Globe` in `shaders/globe.wgsl`, which says what the fields mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the shader's own struct says it")]
+pub struct Globe {
+    pub turn: [[f32; 4]; 3],
+    pub centre: [f32; 2],
+    pub size: [f32; 2],
+    pub radius: f32,
+    pub octaves: u32,
+    pub lamp: f32,
+    pub encodes: f32,
+    pub window: [f32; 2],
+}
+
+/// As `Frames` in `shaders/globe.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+#[expect(missing_docs, reason = "the shader's own struct says it")]
+pub struct Frames {
+    pub turns: [[f32; 4]; 256],
+}
+
 /// The shaders, by name, as they are written; [`source`] makes modules of them.
-pub const SHADERS: [(&str, &str); 7] = [
+pub const SHADERS: [(&str, &str); 8] = [
     ("grow", include_str!("../../shaders/grow.wgsl")),
     ("relief", include_str!("../../shaders/relief.wgsl")),
     ("noise", include_str!("../../shaders/noise.wgsl")),
@@ -99,6 +122,7 @@ pub const SHADERS: [(&str, &str); 7] = [
     ("sheet", include_str!("../../shaders/sheet.wgsl")),
     ("land", include_str!("../../shaders/land.wgsl")),
     ("shrink", include_str!("../../shaders/shrink.wgsl")),
+    ("globe", include_str!("../../shaders/globe.wgsl")),
 ];
 
 /// What several shaders share.
@@ -140,6 +164,16 @@ const EVENING_ELEVATION: f64 = 0.27;
 
 /// Loose gravel and sand that rivers have laid down.
 const ALLUVIUM: u32 = 0xdc_d8c6;
+
+/// The dark of the room around the land, `0xRRGGBB`.
+pub(super) const ROOM: u32 = 0x14_1618;
+
+/// Corners of the polygon in which a planet is drawn: what lies beside the disc is drawn for nothing.
+pub(super) const DISC_CORNERS: u32 = 24;
+/// Cells per radian of the coarsest detail of a planet.
+pub(super) const PLANET_DETAIL: f64 = 9.0;
+/// Cells of the finest detail of a planet along a pixel.
+pub(super) const FINEST_DETAIL: f64 = 0.5;
 
 /// Rows of the ramp texture: colours by height.
 pub(super) const RAMP_ROWS: [&str; 3] = ["OPEN", "WOOD", "ROCK"];
@@ -199,6 +233,10 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
     }
     constant("RAMP_STEPS", &float(f64::from(RAMP_STEPS)));
     constant("PILE_STEPS", &float(f64::from(PILE_STEPS)));
+    constant("ROOM", &format_args!("{ROOM}u"));
+    constant("CORNERS", &format_args!("{DISC_CORNERS}u"));
+    constant("DETAIL", &float(PLANET_DETAIL));
+    constant("FINEST", &float(FINEST_DETAIL));
     for names in [RAMP_ROWS, PILE_ROWS] {
         for (row, name) in names.iter().enumerate() {
             constant(name, &row);
@@ -225,7 +263,7 @@ pub fn source(name: &str, light: LightQuality, penumbra: (f32, f32)) -> String {
         .map_or("", |(_, own)| own);
     let shared = match name {
         "shrink" => "",
-        "land" => ENCODE,
+        "land" | "globe" => ENCODE,
         _ => GROUND,
     };
     let more = match name {

@@ -1,4 +1,4 @@
-//! Surface → shaded land, in plan and in perspective, on the graphics card.
+//! Surface → shaded land, in plan and in perspective, and planet → globe, on the graphics card.
 //!
 //! What does not depend on the eye (shape, light, colours) is computed once for each step of the land's growth, into
 //! a *sheet* as fine as the window, and only laid on the heights in each frame; on a software adapter in strips, so
@@ -8,6 +8,7 @@
 
 mod camera;
 mod flight;
+mod globe;
 mod growth;
 mod land;
 pub mod layout;
@@ -20,7 +21,8 @@ mod work;
 
 pub use camera::{Camera, Oblique, plan_rect};
 pub use flight::{Focus, flight};
+pub use globe::{Disc, GlobeRenderer};
 pub use land::{LandRenderer, LandStyle};
 pub use layout::LightQuality;
-pub use offscreen::{Canvas, picture};
+pub use offscreen::{Canvas, globe_picture, picture};
 pub use quality::RenderQuality;

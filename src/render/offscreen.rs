@@ -3,11 +3,13 @@
 use image::RgbaImage;
 
 use super::camera::Camera;
+use super::globe::{Disc, GlobeRenderer};
 use super::land::{LandRenderer, LandStyle};
 use super::passes::Sheet;
 use super::quality::RenderQuality;
 use crate::gpu::{Gpu, GpuError};
 use crate::surface::Surface;
+use crate::surface::planet::Planet;
 
 /// How bytes of a pixel lie in pictures.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -32,6 +34,26 @@ pub fn picture(
     canvas.image(gpu)
 }
 
+/// A planet as `view` has it, on a picture of `size_px`.
+///
+/// # Errors
+/// As [`picture`].
+pub fn globe_picture(
+    gpu: &Gpu,
+    planet: &Planet,
+    view: &Disc,
+    size_px: [u32; 2],
+) -> Result<RgbaImage, GpuError> {
+    let target = target(gpu, size_px)?;
+    let mut globe = GlobeRenderer::new(gpu, FORMAT);
+    globe.show(gpu, planet);
+    let mut encoder = encoder(gpu);
+    globe.draw(gpu, &mut encoder, &target.view, size_px, view, 1.0);
+    gpu.queue.submit([encoder.finish()]);
+    done(gpu)?;
+    image(gpu, &target)
+}
+
 /// A land and a picture to draw it into, frame after frame, as a window would.
 pub struct Canvas {
     /// The land.
@@ -45,16 +67,9 @@ impl Canvas {
     /// # Errors
     /// When that is none, or more than the card can draw.
     pub fn new(gpu: &Gpu, size_px: [u32; 2], quality: RenderQuality) -> Result<Self, GpuError> {
-        let most = gpu.device.limits().max_texture_dimension_2d.min(MAX_SIDE);
-        if size_px.iter().any(|side| !(1..=most).contains(side)) {
-            let [width, height] = size_px;
-            let refused =
-                format!("a picture of {width} × {height} pixels; it draws 1 to {most} along a side");
-            return Err(GpuError::Refused(refused));
-        }
         Ok(Self {
+            target: target(gpu, size_px)?,
             land: LandRenderer::new(gpu, FORMAT, quality),
-            target: Sheet::new(&gpu.device, "picture", FORMAT, size_px),
         })
     }
 
@@ -76,10 +91,25 @@ impl Canvas {
     /// # Errors
     /// When the card refuses, or is lost.
     pub fn image(&self, gpu: &Gpu) -> Result<RgbaImage, GpuError> {
-        let [width, height] = self.target.size;
-        RgbaImage::from_raw(width, height, read(gpu, &self.target)?)
-            .ok_or_else(|| GpuError::Refused("the picture came back incomplete".to_owned()))
+        image(gpu, &self.target)
     }
+}
+
+/// What a picture is drawn into.
+fn target(gpu: &Gpu, size_px: [u32; 2]) -> Result<Sheet, GpuError> {
+    let most = gpu.device.limits().max_texture_dimension_2d.min(MAX_SIDE);
+    if size_px.iter().any(|side| !(1..=most).contains(side)) {
+        let [width, height] = size_px;
+        let refused = format!("a picture of {width} × {height} pixels; it draws 1 to {most} along a side");
+        return Err(GpuError::Refused(refused));
+    }
+    Ok(Sheet::new(&gpu.device, "picture", FORMAT, size_px))
+}
+
+fn image(gpu: &Gpu, target: &Sheet) -> Result<RgbaImage, GpuError> {
+    let [width, height] = target.size;
+    RgbaImage::from_raw(width, height, read(gpu, target)?)
+        .ok_or_else(|| GpuError::Refused("the picture came back incomplete".to_owned()))
 }
 
 fn encoder(gpu: &Gpu) -> wgpu::CommandEncoder {

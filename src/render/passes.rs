@@ -49,16 +49,16 @@ pub(super) struct Pipelines {
 }
 
 /// One pipeline, before it is made.
-struct Recipe<'a> {
-    name: &'a str,
-    module: &'a wgpu::ShaderModule,
-    vertex: &'a str,
-    fragment: &'a str,
-    targets: &'a [wgpu::ColorTargetState],
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    strip: bool,
-    depth: Option<wgpu::CompareFunction>,
-    samples: u32,
+pub(super) struct Recipe<'a> {
+    pub(super) name: &'a str,
+    pub(super) module: &'a wgpu::ShaderModule,
+    pub(super) vertex: &'a str,
+    pub(super) fragment: &'a str,
+    pub(super) targets: &'a [wgpu::ColorTargetState],
+    pub(super) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub(super) strip: bool,
+    pub(super) depth: Option<wgpu::CompareFunction>,
+    pub(super) samples: u32,
 }
 
 impl Pipelines {
@@ -75,7 +75,7 @@ impl Pipelines {
             })
         };
         let [grow, relief, noise, rivers, sheet, land, shrink] =
-            layout::SHADERS.map(|(name, _)| module(name));
+            ["grow", "relief", "noise", "rivers", "sheet", "land", "shrink"].map(module);
         let onto = |name, module, fragment, targets| {
             Recipe {
                 name,
@@ -168,7 +168,7 @@ impl Pipelines {
 }
 
 impl Recipe<'_> {
-    fn make(&self, device: &wgpu::Device) -> wgpu::RenderPipeline {
+    pub(super) fn make(&self, device: &wgpu::Device) -> wgpu::RenderPipeline {
         let targets: Vec<_> = self.targets.iter().cloned().map(Some).collect();
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.name),

@@ -1,10 +1,12 @@
 //! `report.json`: the facts of a run, without times, so that equal inputs give equal bytes.
 
+mod globe;
 mod range;
 
 use glam::DVec2;
 use serde::Serialize;
 
+pub use globe::{GLOBE_REPORT_VERSION, GlobeDeeds, GlobeInputs, GlobePlate, GlobeReport, Hypsometry};
 pub use range::RangeFacts;
 
 use crate::export::digest;

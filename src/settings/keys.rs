@@ -215,8 +215,8 @@ pub const KEYS: &[Key] = &[
     Key {
         section: "",
         name: "mode",
-        help: "The world that is shown.",
-        domain: Domain::Choice(&["mountain"]),
+        help: "The world that a fresh table shows.",
+        domain: Domain::Choice(&["mountain", "globe"]),
         get: |s| Value::Text(s.mode.name().to_owned()),
         set: |s, v| {
             if let Value::Text(word) = v {

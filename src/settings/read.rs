@@ -247,8 +247,8 @@ mod tests {
             ("version = 2", "1: version: expected 1, found 2"),
             ("version = \"1\"", "version: expected 1"),
             (
-                "mode = \"globe\"",
-                "mode: expected one of \"mountain\", found \"globe\"",
+                "mode = \"moon\"",
+                "mode: expected one of \"mountain\", \"globe\", found \"moon\"",
             ),
             ("table = 3", "table: expected a section [table], found 3"),
             (

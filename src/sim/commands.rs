@@ -171,7 +171,13 @@ impl Sim {
             Action::TurnFolds { path } => self.edit_folds(FoldEditKind::Turn, path),
             Action::RaiseFolds { path, by } => self.edit_folds(FoldEditKind::Raise(*by), path),
             // Tools belong to the table's controls; the globe is not of this world.
-            Action::Tool(_) | Action::Mode(_) | Action::View { .. } | Action::Earth => false,
+            Action::Tool(_)
+            | Action::Mode(_)
+            | Action::View { .. }
+            | Action::Earth
+            | Action::Planet { .. }
+            | Action::Cut { .. }
+            | Action::Paint { .. } => false,
         };
         if begins && !edited {
             self.state.undo.pop();

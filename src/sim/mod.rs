@@ -4,6 +4,8 @@
 //! parameters give the same bits, for any number of threads. In each tick contacts become hand events, hand events
 //! become plates, plates become uplift, and every `erosion_dt_yr` of model time the land takes a step.
 //!
+//! [`globe`] is the same for the planet.
+//!
 //! Four ways lead back in time: a contact that turns out to be a palm within the revision time is *rolled back*
 //! (the ticks since are played again without it), *undo* restores what the last push of a side of the table found,
 //! *scrub* looks at a snapshot of the history, and a step that yields a number that is none is *quarantined* (the land before it stays).
@@ -12,6 +14,7 @@ mod commands;
 mod drive;
 mod exposure;
 mod folding;
+pub mod globe;
 mod history;
 mod params;
 mod resume;

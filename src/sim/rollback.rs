@@ -8,7 +8,7 @@ use crate::gesture::contact::InputFrame;
 const REACH_US: i64 = 320_000;
 
 /// States from the last moments and the input that came since the oldest of them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Rollback<S> {
     /// Session time up to which input has been played (−16 ms: none), and the state then.
     checkpoints: VecDeque<(i64, S)>,

@@ -3,11 +3,16 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DMat2, DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::mesh::Mesh;
 
 /// Least and greatest number of samples.
 pub const SAMPLES_RANGE: (usize, usize) = (1_000, 1_000_000);
+
+/// Least weight of a corner, of all three together, at which a place still counts as inside a triangle. Rounding makes
+/// 10⁻¹¹ of the smallest triangles.
+const ON_EDGE: f64 = 1e-10;
 
 /// The golden ratio.
 const GOLDEN: f64 = 1.618_033_988_749_895;
@@ -47,12 +52,13 @@ impl Lattice {
         if !(SAMPLES_RANGE.0..=SAMPLES_RANGE.1).contains(&samples) {
             return Err(LatticeError::Size { found: samples });
         }
-        let points: Vec<DVec3> = (0..samples).map(|i| sample(i, samples)).collect();
-        let mesh = Mesh::new(&points).ok_or(LatticeError::Open(samples))?;
+        let points: Vec<DVec3> = (0..samples).into_par_iter().map(|i| sample(i, samples)).collect();
+        let inverse = Inverse::new(samples);
+        let mesh = Mesh::new(&points, &inverse).ok_or(LatticeError::Open(samples))?;
         Ok(Self {
             points,
             mesh,
-            inverse: Inverse::new(samples),
+            inverse,
         })
     }
 
@@ -105,30 +111,59 @@ impl Lattice {
 
     /// As [`Self::locate`], where the nearest sample is known.
     pub fn locate_near(&self, p: DVec3, nearest: u32) -> ([u32; 3], [f64; 3]) {
-        let star = self.neighbours(nearest);
-        let centre = self.point(nearest);
-        let (mut best, mut best_least) = (([nearest; 3], [1.0, 0.0, 0.0]), f64::NEG_INFINITY);
-        for (k, &a) in star.iter().enumerate() {
-            let b = star[(k + 1) % star.len()];
-            let (pa, pb) = (self.point(a), self.point(b));
-            // Volumes of p with each edge: positive inside.
-            let weights = [
-                p.dot(pa.cross(pb)),
-                p.dot(pb.cross(centre)),
-                p.dot(centre.cross(pa)),
-            ];
-            let least = weights[0].min(weights[1]).min(weights[2]);
-            if least > best_least {
-                let clamped = weights.map(|w| w.max(0.0));
-                let sum = clamped[0] + clamped[1] + clamped[2];
-                (best, best_least) = (([nearest, a, b], clamped.map(|w| w / sum)), least);
-                if least >= 0.0 {
-                    break;
+        let mut best = self.locate_in_star(p, nearest);
+        if best.least < -ON_EDGE {
+            // At the poles cells reach beyond the triangles of their sample.
+            for &i in self.neighbours(nearest) {
+                let other = self.locate_in_star(p, i);
+                if other.least > best.least {
+                    best = other;
                 }
             }
         }
-        best
+        let clamped = best.weights.map(|w| w.max(0.0));
+        let sum = clamped[0] + clamped[1] + clamped[2];
+        (best.corners, clamped.map(|w| w / sum))
     }
+
+    /// The triangle around sample `i` between whose edges from there `p` lies; `p` may be beyond the third edge.
+    fn locate_in_star(&self, p: DVec3, i: u32) -> Located {
+        let star = self.neighbours(i);
+        let centre = self.point(i);
+        // Volume of p with the edge to a neighbour: positive to the left of it.
+        let side = |k: usize| p.dot(centre.cross(self.point(star[k])));
+        // At the sample itself the sides are rounding errors, and any triangle will do.
+        let mut between = [(0, side(0)), (1, side(1))];
+        let mut last = between[1];
+        for k in (2..star.len()).chain([0]) {
+            if between[0].1 >= 0.0 && between[1].1 <= 0.0 {
+                break;
+            }
+            let next = (k, side(k));
+            if last.1 >= 0.0 && next.1 <= 0.0 {
+                between = [last, next];
+            }
+            last = next;
+        }
+        let corners = [i, star[between[0].0], star[between[1].0]];
+        let opposite = p.dot(self.point(corners[1]).cross(self.point(corners[2])));
+        let weights = [opposite, -between[1].1, between[0].1];
+        let sum: f64 = weights.iter().sum();
+        Located {
+            corners,
+            weights,
+            least: weights.iter().copied().fold(f64::INFINITY, f64::min) / sum,
+        }
+    }
+}
+
+/// A place in a triangle.
+struct Located {
+    corners: [u32; 3],
+    /// Barycentric weights, not scaled.
+    weights: [f64; 3],
+    /// The least of them, scaled so that they sum to 1.
+    least: f64,
 }
 
 /// Sample `i` of `n`.
@@ -141,9 +176,9 @@ fn sample(i: usize, n: usize) -> DVec3 {
 
 /// For each zone of latitude, the cell of the lattice that neighbouring samples span there.
 #[derive(Clone, Debug)]
-struct Inverse {
+pub(super) struct Inverse {
     n: f64,
-    /// By `k − 2`.
+    /// From the poles to the equator.
     zones: Vec<Zone>,
 }
 
@@ -153,13 +188,17 @@ struct Zone {
     /// Columns: change of (longitude, height) for either step.
     basis: DMat2,
     inverse: DMat2,
+    /// `1 − z²` from which on it holds.
+    from: f64,
 }
 
 impl Inverse {
     fn new(samples: usize) -> Self {
         let n = samples as f64;
-        let last = zone_of(n, 0.0);
-        let zones = (2..=last)
+        // k = ⌊log_φ²(n π √5 (1 − z²))⌋, at least 2.
+        let from = |k: i32| GOLDEN.powi(2 * k) / (n * PI * 5_f64.sqrt());
+        let zones = (2..SAMPLES_RANGE.1.ilog2() as i32)
+            .take_while(|&k| k == 2 || from(k) <= 1.0)
             .map(|k| {
                 let fibonacci = GOLDEN.powi(k) / 5_f64.sqrt();
                 let step = |f: f64| {
@@ -170,18 +209,29 @@ impl Inverse {
                 Zone {
                     basis,
                     inverse: basis.inverse(),
+                    from: if k == 2 { 0.0 } else { from(k) },
                 }
             })
             .collect();
         Self { n, zones }
     }
 
+    /// The zone at height `z`; its steps are `F(k)` and `F(k+1)` with `k` two more.
+    pub(super) fn zone(&self, z: f64) -> usize {
+        let across = 1.0 - z * z;
+        // Most of the sphere lies in the last zones.
+        self.zones
+            .iter()
+            .rposition(|zone| across >= zone.from)
+            .unwrap_or(0)
+    }
+
     fn nearest(&self, p: DVec3, points: &[DVec3]) -> u32 {
         let z = p.z.clamp(-1.0, 1.0);
-        let k = zone_of(self.n, z);
-        let zone = &self.zones[((k - 2) as usize).min(self.zones.len() - 1)];
+        let zone = &self.zones[self.zone(z)];
         let top = 1.0 - 1.0 / self.n;
-        let corner = (zone.inverse * DVec2::new(p.y.atan2(p.x), z - top)).floor();
+        let corner = zone.inverse * DVec2::new(p.y.atan2(p.x), z - top);
+        let corner = DVec2::new(floor(corner.x), floor(corner.y));
         let (mut best, mut best_dot) = (0, f64::NEG_INFINITY);
         for s in 0..4 {
             let step = corner + DVec2::new(f64::from(s % 2), f64::from(s / 2));
@@ -199,8 +249,8 @@ impl Inverse {
     }
 }
 
-/// Which pair of Fibonacci numbers spans the cells at height `z`, at least 2.
-fn zone_of(n: f64, z: f64) -> i32 {
-    let across = (n * PI * 5_f64.sqrt() * (1.0 - z * z)).max(1.0);
-    ((across.ln() / (2.0 * GOLDEN.ln())).floor() as i32).max(2)
+/// The greatest whole number that is not above `x`: far from the limits of integers this is quicker than the library's.
+fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
 }

@@ -80,6 +80,8 @@ pub(super) fn control(glyph: Glyph<'_>, kind: ControlKind, on: bool, value: f64)
         ControlKind::StartOver => start_over(glyph),
         ControlKind::Readouts => figures(glyph),
         ControlKind::Save => save(glyph),
+        ControlKind::World if on => globe(glyph),
+        ControlKind::World => mountain(glyph),
         ControlKind::FreezeSlice => freeze(glyph),
         ControlKind::CloseSlice => {
             glyph.line(&[(-0.6, -0.6), (0.6, 0.6)], 1.0);
@@ -182,6 +184,28 @@ fn save(glyph: Glyph<'_>) {
     glyph.line(&[(0.0, -0.85), (0.0, 0.1)], 1.0);
     glyph.fill(&[(0.0, 0.4), (-0.28, 0.0), (0.28, 0.0)], 1.0);
     glyph.line(&[(-0.78, 0.2), (-0.78, 0.72), (0.78, 0.72), (0.78, 0.2)], 1.0);
+}
+
+/// A ball with a meridian and the equator.
+fn globe(glyph: Glyph<'_>) {
+    glyph.arc((0.0, 0.0), 0.82, 0.0, 2.0 * PI);
+    let oval = |wide: f32, tall: f32, from: f32| -> Vec<(f32, f32)> {
+        (0..=16)
+            .map(|i| from + PI * i as f32 / 16.0)
+            .map(|angle| (wide * angle.cos(), tall * angle.sin()))
+            .collect()
+    };
+    glyph.line(&oval(0.36, 0.82, PI / 2.0), 0.75);
+    glyph.line(&oval(0.82, 0.30, 0.0), 0.75);
+}
+
+/// A summit before another.
+fn mountain(glyph: Glyph<'_>) {
+    glyph.line(
+        &[(-0.92, 0.6), (-0.2, -0.72), (0.2, 0.0), (0.42, -0.3), (0.92, 0.6)],
+        1.0,
+    );
+    glyph.line(&[(-0.92, 0.6), (0.92, 0.6)], 0.75);
 }
 
 /// What a figure is of.

@@ -13,6 +13,7 @@ pub mod controls;
 mod ease;
 pub mod folds;
 pub mod ghost;
+pub mod globe;
 pub mod halo;
 mod icons;
 pub mod ink;

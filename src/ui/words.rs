@@ -2,6 +2,7 @@
 
 use crate::gesture::command::Tool;
 use crate::instrument::ControlKind;
+use crate::surface::planet::BorderKind;
 
 /// Beside the hand that stays the count-down.
 pub(super) const TOUCH_TO_STAY: &str = "Touch to stay";
@@ -15,6 +16,16 @@ pub(super) const AT_REST: &str = "at rest";
 /// Millions of years.
 pub(super) const MY: &str = "My";
 
+/// What two plates do where they meet.
+pub(super) fn border(kind: BorderKind) -> &'static str {
+    match kind {
+        BorderKind::Ridge => "apart: new sea floor",
+        BorderKind::Subduction => "one dives below the other",
+        BorderKind::Collision => "continents collide",
+        BorderKind::Transform => "slide past",
+    }
+}
+
 /// The word beside a control.
 pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
     match (kind, on) {
@@ -27,6 +38,8 @@ pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
         (ControlKind::StartOver, _) => "reset",
         (ControlKind::Readouts, _) => "figures",
         (ControlKind::Save, _) => "save",
+        (ControlKind::World, true) => "planet",
+        (ControlKind::World, false) => "mountain",
         (ControlKind::FreezeSlice, true) => "follow",
         (ControlKind::FreezeSlice, false) => "freeze",
         (ControlKind::CloseSlice, _) => "close",

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 use glam::DVec2;
+use orogen::gesture::command::Mode;
 use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Side, Source};
 use orogen::gesture::params::GestureParams;
 use orogen::instrument::{ControlKind, ControlView, Instrument, InstrumentParams, Key, Route, Scene};
@@ -22,6 +23,7 @@ pub(crate) fn params() -> InstrumentParams {
         corner: Corner::NorthWest,
         unattended: false,
         folds: true,
+        mode: Mode::Mountain,
         readouts: false,
         gesture: GestureParams::default(),
     }

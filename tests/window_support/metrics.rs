@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::At;
 
 /// Every field of a second.
-pub const WHOLE_SECOND: &str = "t_s phase frames frame_ms_p50 frame_ms_p99 touch_ms_p50 touch_ms_p95 steps_per_s \
+pub const WHOLE_SECOND: &str = "t_s phase mode plates plates_led led_deg_per_my frames frame_ms_p50 frame_ms_p99 touch_ms_p50 touch_ms_p95 steps_per_s \
     contacts contacts_total hands pushes taps ghosts_dropped dead_touches control_presses resets panics nodes scale \
     elapsed_yr max_m min_m adapter backend width height";
 
@@ -36,6 +36,12 @@ pub struct Second {
     pub panics: u64,
     /// Age of the land, years.
     pub elapsed_yr: f64,
+    /// The world that is shown.
+    pub mode: String,
+    /// Plates of the planet, those that hands lead, and how fast the fastest of them turns.
+    pub plates: u64,
+    pub plates_led: u64,
+    pub led_deg_per_my: f64,
     /// Highest point, metres.
     pub max_m: f64,
     /// The window's inside, pixels.

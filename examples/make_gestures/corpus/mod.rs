@@ -3,6 +3,7 @@
 mod builtin;
 mod expected;
 mod hand;
+mod planets;
 mod ranges;
 mod show;
 mod trouble;
@@ -27,9 +28,10 @@ type Scene = (&'static str, fn() -> show::Show);
 
 /// All matters, in the order of the table.
 pub(crate) fn matters() -> Vec<Matter> {
-    let groups: [(&str, &[Scene]); 5] = [
+    let groups: [(&str, &[Scene]); 6] = [
         ("What hands are for", &expected::SCENES),
         ("Ranges of the world", &ranges::SCENES),
+        ("Planets", &planets::SCENES),
         ("Visitors to whom nobody explained anything", &visitors::SCENES),
         ("Trouble with contacts", &trouble::SCENES),
         ("The show", &builtin::SCENES),

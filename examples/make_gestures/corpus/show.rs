@@ -14,7 +14,7 @@ use rand_pcg::rand_core::Rng as _;
 use super::hand::{Pose, pose_at};
 
 /// The table: 16:9, 55 inches.
-const TABLE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+pub(super) const TABLE_MM: DVec2 = DVec2::new(1209.6, 680.4);
 
 /// Time between two reports of the touchscreen, ms.
 pub(super) const FRAME_MS: u32 = 16;
@@ -167,6 +167,11 @@ impl Show {
     pub(super) fn world(&mut self, years: f64, nodes: u64) {
         self.header.years = Some(years);
         self.header.nodes = Some(nodes);
+    }
+
+    /// The show is on the globe.
+    pub(super) fn on_globe(&mut self) {
+        self.header.mode = Mode::Globe;
     }
 
     /// Nothing may come of it.

@@ -43,6 +43,33 @@ fn one_of_each() -> Vec<Action> {
             zoom: 1.5,
         },
         Action::Earth,
+        Action::Planet {
+            plates: 40,
+            continental: 0.3,
+            seed: u64::MAX,
+        },
+        Action::Cut {
+            path: vec![
+                Place { lat: -90.0, lon: 0.1 },
+                Place {
+                    lat: 1e-9,
+                    lon: 180.0,
+                },
+            ],
+        },
+        Action::Paint {
+            at: Place {
+                lat: 12.25,
+                lon: -170.0,
+            },
+            radius_deg: 6.0,
+            paint: Paint::Continent,
+        },
+        Action::Paint {
+            at: Place { lat: 0.0, lon: 0.0 },
+            radius_deg: 0.5,
+            paint: Paint::Ocean,
+        },
         Action::Scrub(2.5e6),
     ]);
     all
@@ -105,6 +132,30 @@ fn known_words_of_the_wrong_kind_are_refused_by_path() {
         (r#"{"label_slice":{"at":1,"text":""}}"#, "do.label_slice.text"),
         (r#"{"view":{"lon":0,"lat":91,"zoom":1}}"#, "do.view.lat"),
         (r#"{"scrub":1e10}"#, "do.scrub"),
+        (
+            r#"{"planet":{"plates":0,"continental":0.3,"seed":1}}"#,
+            "do.planet.plates",
+        ),
+        (
+            r#"{"planet":{"plates":40,"continental":30,"seed":1}}"#,
+            "do.planet.continental",
+        ),
+        (r#"{"planet":{"plates":40,"continental":0.3}}"#, "do.planet.seed"),
+        (r#"{"cut":[[0,0]]}"#, "do.cut"),
+        (r#"{"cut":[[0,0],[91,0]]}"#, "do.cut[1]"),
+        (r#"{"cut":[[0,0],[0]]}"#, "do.cut[1]"),
+        (
+            r#"{"paint":{"at":[0,181],"radius":3,"crust":"ocean"}}"#,
+            "do.paint.at",
+        ),
+        (
+            r#"{"paint":{"at":[0,0],"radius":91,"crust":"ocean"}}"#,
+            "do.paint.radius",
+        ),
+        (
+            r#"{"paint":{"at":[0,0],"radius":3,"crust":"cheese"}}"#,
+            "do.paint.crust",
+        ),
         (r#"{"undo":true,"side":"east"}"#, "do.side"),
         (r#"{"undo":true,"contact":-1}"#, "do.contact"),
         (r#"[{"undo":true},{"play":2}]"#, "do[1].play"),

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::super::contact::Side;
 use super::super::json::{write_number, write_position, write_text};
-use super::{Action, Command};
+use super::{Action, Command, Place};
 
 impl Command {
     /// Writes the canonical form: the word, then side and contact where known; no spaces; mm with two decimals.
@@ -48,6 +48,35 @@ impl Command {
                 write_text(out, text);
                 out.push('}');
             }
+            Action::Planet {
+                plates,
+                continental,
+                seed,
+            } => {
+                let _ = write!(out, "{{\"plates\":{plates},\"continental\":");
+                write_number(out, *continental);
+                let _ = write!(out, ",\"seed\":{seed}}}");
+            }
+            Action::Cut { path } => {
+                for (i, &place) in path.iter().enumerate() {
+                    out.push(if i == 0 { '[' } else { ',' });
+                    write_place(out, place);
+                }
+                out.push(']');
+            }
+            Action::Paint {
+                at,
+                radius_deg,
+                paint,
+            } => {
+                out.push_str("{\"at\":");
+                write_place(out, *at);
+                out.push_str(",\"radius\":");
+                write_number(out, *radius_deg);
+                out.push_str(",\"crust\":");
+                write_text(out, paint.name());
+                out.push('}');
+            }
             Action::View { lon, lat, zoom } => {
                 for (start, value) in [("{\"lon\":", lon), (",\"lat\":", lat), (",\"zoom\":", zoom)] {
                     out.push_str(start);
@@ -66,6 +95,14 @@ impl Command {
         }
         out.push('}');
     }
+}
+
+fn write_place(out: &mut String, place: Place) {
+    for (start, value) in [('[', place.lat), (',', place.lon)] {
+        out.push(start);
+        write_number(out, value);
+    }
+    out.push(']');
 }
 
 fn write_path(out: &mut String, path: &[DVec2]) {

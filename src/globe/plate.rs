@@ -1,0 +1,210 @@
+//! A plate: a set of samples in a frame that turns, and the crust on them.
+
+use glam::{DQuat, DVec3};
+use rayon::prelude::*;
+
+use super::crust::{Crust, SampleSet};
+use crate::sphere::{Lattice, RADIUS_KM};
+use crate::surface::planet::Grip;
+
+/// A plate. Its samples are samples of the one lattice, seen in the plate's own frame: when it moves, only `rotation`
+/// changes, and its crust stays as it is, to the bit.
+#[derive(Clone, Debug)]
+pub(super) struct Plate {
+    /// Its name for life.
+    pub(super) id: u32,
+    /// From its frame to the world's.
+    pub(super) rotation: DQuat,
+    /// Angular velocity in the world's frame, rad/My.
+    pub(super) omega: DVec3,
+    /// What a hand does with it.
+    pub(super) grip: Grip,
+    set: SampleSet,
+    /// Its samples, ascending.
+    members: Vec<u32>,
+    /// Their crust.
+    pub(super) crust: Vec<Crust>,
+    /// A cap in its frame that holds it: centre and the cosine of the radius.
+    cap: (DVec3, f64),
+}
+
+impl Plate {
+    /// A plate on `members`, which ascend.
+    pub(super) fn new(
+        id: u32,
+        rotation: DQuat,
+        members: Vec<u32>,
+        crust: Vec<Crust>,
+        lattice: &Lattice,
+    ) -> Self {
+        let mut plate = Self {
+            id,
+            rotation,
+            omega: DVec3::ZERO,
+            grip: Grip::Free,
+            set: SampleSet::new(lattice.len(), &[]),
+            members: Vec::new(),
+            crust: Vec::new(),
+            cap: (DVec3::Z, -1.0),
+        };
+        plate.replace(members, crust, lattice);
+        plate
+    }
+
+    fn replace(&mut self, members: Vec<u32>, crust: Vec<Crust>, lattice: &Lattice) {
+        debug_assert!(
+            members.is_sorted() && members.len() == crust.len(),
+            "members ascend"
+        );
+        self.set = SampleSet::new(lattice.len(), &members);
+        let sum: DVec3 = members.iter().map(|&i| lattice.point(i)).sum();
+        let centre = sum.try_normalize().unwrap_or(DVec3::Z);
+        let least = members
+            .iter()
+            .map(|&i| lattice.point(i).dot(centre))
+            .fold(1.0, f64::min);
+        // A cell reaches beyond its sample.
+        let radius = least.clamp(-1.0, 1.0).acos() + 1.5 * lattice.spacing();
+        self.cap = (centre, radius.min(std::f64::consts::PI).cos());
+        self.members = members;
+        self.crust = crust;
+    }
+
+    /// Its samples, ascending.
+    pub(super) fn members(&self) -> &[u32] {
+        &self.members
+    }
+
+    /// Number of samples.
+    pub(super) fn len(&self) -> usize {
+        self.members.len()
+    }
+
+    /// True for a sample of its own.
+    pub(super) fn contains(&self, i: u32) -> bool {
+        self.set.contains(i)
+    }
+
+    /// The number of a sample of its own.
+    pub(super) fn slot(&self, i: u32) -> Option<u32> {
+        self.set.slot(i)
+    }
+
+    /// The slot whose cell holds the world point `p`, if the plate reaches there.
+    pub(super) fn slot_at(&self, p: DVec3, lattice: &Lattice) -> Option<u32> {
+        let local = self.rotation.inverse() * p;
+        if local.dot(self.cap.0) < self.cap.1 {
+            return None;
+        }
+        self.slot(lattice.nearest(local))
+    }
+
+    /// Where a slot is in the world.
+    pub(super) fn position(&self, slot: u32, lattice: &Lattice) -> DVec3 {
+        self.rotation * lattice.point(self.members[slot as usize])
+    }
+
+    /// Velocity at the world point `p`, rad/My.
+    pub(super) fn velocity(&self, p: DVec3) -> DVec3 {
+        self.omega.cross(p)
+    }
+
+    /// Middle of its area in the world's frame.
+    pub(super) fn centroid(&self, lattice: &Lattice) -> DVec3 {
+        let sum: DVec3 = self.members.iter().map(|&i| lattice.point(i)).sum();
+        (self.rotation * sum).try_normalize().unwrap_or(DVec3::Z)
+    }
+
+    /// Its area, km².
+    pub(super) fn area_km2(&self, lattice: &Lattice) -> f64 {
+        self.members
+            .iter()
+            .map(|&i| lattice.areas()[i as usize])
+            .sum::<f64>()
+            * RADIUS_KM
+            * RADIUS_KM
+    }
+
+    /// Share of its samples that is continental.
+    pub(super) fn continental_share(&self) -> f64 {
+        let continental = self.crust.iter().filter(|crust| crust.continental).count();
+        continental as f64 / self.len().max(1) as f64
+    }
+
+    /// Moves on for `my`.
+    pub(super) fn turn(&mut self, my: f64) {
+        self.rotation = (DQuat::from_scaled_axis(self.omega * my) * self.rotation).normalize();
+    }
+
+    /// Takes samples away (`gone` says for each slot) and adds others; where an added one is there already it replaces it.
+    pub(super) fn change(
+        &mut self,
+        gone: impl Fn(u32) -> bool,
+        mut added: Vec<(u32, Crust)>,
+        lattice: &Lattice,
+    ) {
+        added.sort_by_key(|(i, _)| *i);
+        added.dedup_by_key(|(i, _)| *i);
+        let mut members = Vec::with_capacity(self.len() + added.len());
+        let mut crust = Vec::with_capacity(self.len() + added.len());
+        let mut news = added.into_iter().peekable();
+        for (slot, &i) in self.members.iter().enumerate() {
+            while let Some((new, new_crust)) = news.next_if(|(new, _)| *new < i) {
+                members.push(new);
+                crust.push(new_crust);
+            }
+            if let Some((new, new_crust)) = news.next_if(|(new, _)| *new == i) {
+                members.push(new);
+                crust.push(new_crust);
+            } else if !gone(slot as u32) {
+                members.push(i);
+                crust.push(self.crust[slot]);
+            }
+        }
+        for (new, new_crust) in news {
+            members.push(new);
+            crust.push(new_crust);
+        }
+        self.replace(members, crust, lattice);
+    }
+
+    /// Connected regions among the slots that `belongs` names: for each slot the number of its region, and the slots' count
+    /// of each; slots outside get `u32::MAX`. Regions are numbered in the order of their first slot.
+    pub(super) fn regions(&self, lattice: &Lattice, belongs: impl Fn(u32) -> bool) -> (Vec<u32>, Vec<u32>) {
+        let mut region = vec![u32::MAX; self.len()];
+        let mut sizes = Vec::new();
+        let mut open = Vec::new();
+        for start in 0..self.len() as u32 {
+            if region[start as usize] != u32::MAX || !belongs(start) {
+                continue;
+            }
+            let number = sizes.len() as u32;
+            let mut size = 0;
+            region[start as usize] = number;
+            open.push(start);
+            while let Some(slot) = open.pop() {
+                size += 1;
+                for &n in lattice.neighbours(self.members[slot as usize]) {
+                    if let Some(next) = self.slot(n)
+                        && region[next as usize] == u32::MAX
+                        && belongs(next)
+                    {
+                        region[next as usize] = number;
+                        open.push(next);
+                    }
+                }
+            }
+            sizes.push(size);
+        }
+        (region, sizes)
+    }
+
+    /// The world's sample whose cell holds each of the plate's samples.
+    pub(super) fn cells(&self, lattice: &Lattice) -> Vec<u32> {
+        self.members
+            .par_iter()
+            .with_min_len(2048)
+            .map(|&i| lattice.nearest(self.rotation * lattice.point(i)))
+            .collect()
+    }
+}
