@@ -12,9 +12,6 @@ use super::plate::Plate;
 use crate::sphere::{Lattice, RADIUS_KM};
 use crate::surface::planet::{Grip, Orogeny};
 
-/// Land that rises more slowly than this is not a mountain belt, mm/yr.
-const LEAST_OROGENY: f64 = 0.015;
-
 /// A place on the upper plate from which a front is felt.
 #[derive(Clone, Copy, Debug)]
 struct Front {
@@ -88,7 +85,7 @@ impl Fronts {
                 .try_normalize()
                 .unwrap_or(DVec3::ZERO);
             if !crust.continental {
-                let deep = (meeting.closing / 40.0).min(1.0) as f32;
+                let deep = (meeting.closing / params.trench_speed).min(1.0) as f32;
                 let here = &mut trench[meeting.cells[low] as usize];
                 *here = here.max(deep);
             }
@@ -168,12 +165,12 @@ impl Fronts {
         crust.raise(dz as f32);
         crust.z = crust.z.min(params.summit_km as f32);
         let is_land = crust.continental || f64::from(crust.z) > params.emergence_km;
-        if is_land && dz > LEAST_OROGENY * params.dt_my {
+        if is_land && dz > params.least_orogeny * params.dt_my {
             crust.orogeny = Orogeny::Andean;
             crust.orogeny_age = 0.0;
         }
-        // Fold direction: a sum of motions (beta = 1 per 100 km), kept in the tangent plane and to unit length.
-        let motion = turn * (front.motion * (params.dt_my / 100.0));
+        // A sum of motions, kept in the tangent plane and to unit length.
+        let motion = turn * (front.motion * (params.folding * params.dt_my));
         let up = (turn * p).as_vec3();
         let mut motion = motion.as_vec3();
         if motion.dot(crust.fold) < 0.0 {
@@ -197,9 +194,7 @@ impl Fronts {
             let turned = axis + pull.turn / border * (params.slab_pull_deg.to_radians() * params.dt_my);
             let axis = turned.try_normalize().unwrap_or(axis);
             let speed = if params.speed_relaxation_my.is_finite() {
-                let slab = (pull.slab / border).min(0.6);
-                let land = plate.continental_share();
-                let goal = 22.0 * (1.2 - 0.5 * land) + 95.0 * slab * (1.0 - 0.4 * land);
+                let goal = goal_speed(pull.slab / border, plate.continental_share(), params);
                 let share = (params.dt_my / params.speed_relaxation_my).min(1.0);
                 speed + (goal / RADIUS_KM - speed) * share
             } else {
@@ -208,6 +203,12 @@ impl Fronts {
             plate.omega = axis * speed.min(fastest);
         }
     }
+}
+
+/// Speed that a plate comes to, mm/yr: `slab` is the share of its border that plunges, `land` its share of continent.
+fn goal_speed(slab: f64, land: f64, params: &GlobeParams) -> f64 {
+    let slab = slab.min(params.slab_share);
+    params.free_speed * (1.2 - 0.5 * land) + params.slab_speed * slab * (1.0 - 0.4 * land)
 }
 
 /// Each front takes part in what its neighbours along the border feel.

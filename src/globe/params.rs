@@ -61,6 +61,16 @@ pub struct GlobeParams {
     /// Time in which a free plate takes the speed that its slabs and its continents give it, My (*ours*; infinite: plates
     /// keep their speed, as in the paper).
     pub speed_relaxation_my: f64,
+    /// Speed that a plate without slabs comes to, mm/yr; continents take up to half of it off, the sea adds a fifth (*ours*).
+    pub free_speed: f64,
+    /// What is added for a border that plunges all around, less on continents, mm/yr (*ours*).
+    pub slab_speed: f64,
+    /// Share of the border beyond which more slab is of no matter (*ours*).
+    pub slab_share: f64,
+    /// How much of a fold's direction a motion of 1 km makes, 1/km (β, *ours*).
+    pub folding: f64,
+    /// Land that rises more slowly than this is not a mountain belt, mm/yr (*ours*).
+    pub least_orogeny: f64,
     /// Overlap of two continents at which they collide, km (section 6).
     pub collision_overlap_km: f64,
     /// Farthest influence of a collision, km (`r_c`).
@@ -89,6 +99,8 @@ pub struct GlobeParams {
     pub sediment: f64,
     /// Depth of a trench below its surroundings, km (*ours*). 0: trenches are what damping and sediment make of them.
     pub trench_cut_km: f64,
+    /// Speed of closing at which a trench has its full depth, mm/yr (*ours*).
+    pub trench_speed: f64,
     /// Time in which a margin without mountains sinks below the sea, My (*ours*; infinite in the paper).
     pub margin_my: f64,
     /// Steps between two generations of sea floor (the paper: 10–60).
@@ -137,6 +149,11 @@ impl GlobeParams {
             least_closing: 0.0,
             slab_pull_deg: 0.3,
             speed_relaxation_my: f64::INFINITY,
+            free_speed: 22.0,
+            slab_speed: 95.0,
+            slab_share: 0.6,
+            folding: 0.01,
+            least_orogeny: 0.015,
             collision_overlap_km: 300.0,
             collision_km: 4200.0,
             collision_limit_km: 4200.0,
@@ -151,6 +168,7 @@ impl GlobeParams {
             erosion_5km: 0.0,
             sediment: 0.3,
             trench_cut_km: 0.0,
+            trench_speed: 40.0,
             margin_my: f64::INFINITY,
             spread_steps: 10,
             rifts: 0.01,

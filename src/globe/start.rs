@@ -83,7 +83,7 @@ const CONTINENT_ABOVE_M: f32 = -2_000.0;
 
 impl Start {
     /// Seed of everything random.
-    pub(super) fn seed(&self) -> u64 {
+    pub fn seed(&self) -> u64 {
         match self {
             Self::Random { seed, .. } | Self::Maps { seed, .. } => *seed,
         }

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::play::{Play, Published};
 use super::{Clock, Ring};
-use crate::gesture::command::{Action, Command, Mode};
+use crate::gesture::command::Mode;
 use crate::gesture::contact::{InputFrame, Side};
 use crate::gesture::file::Header;
 use crate::gesture::hand::{ContactStats, HandView};
@@ -143,7 +143,7 @@ impl Play for Globe {
         Ok(Self {
             good: sim.clone(),
             drawn: Drawn::of(&sim, 1),
-            ring: new_ring(&params),
+            ring: new_ring(&params, &first),
             params,
             lattice,
             sim,
@@ -207,7 +207,7 @@ impl Play for Globe {
             self.sim = sim;
         }
         self.good = self.sim.clone();
-        self.ring = new_ring(&self.params);
+        self.ring = new_ring(&self.params, &self.first);
         self.drawn = Drawn::of(&self.sim, self.drawn.land + 1);
     }
 
@@ -244,19 +244,18 @@ fn invalid(error: impl std::error::Error + Send + Sync + 'static) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, error)
 }
 
-/// A ring whose replay turns to the planet first.
-fn new_ring(params: &LiveGlobeParams) -> Ring {
+/// A ring for a session that begins with the planet of `start`.
+fn new_ring(params: &LiveGlobeParams, start: &Start) -> Ring {
     let header = Header {
         title: Some("the last minute at the globe".to_owned()),
+        mode: Mode::Globe,
+        seed: Some(start.seed()),
+        nodes: Some(params.samples as u64),
         ..Header::new(params.size_mm)
     };
-    let mut ring = Ring::new(header, None);
-    ring.record(&InputFrame {
-        t_us: 0,
-        events: Vec::new(),
-        commands: vec![Command::new(Action::Mode(Mode::Globe))],
-    });
-    ring
+    let pace = params.sim.pace_my_per_s;
+    let usual = pace == GlobeSimParams::default().pace_my_per_s;
+    Ring::new(header, (!usual).then_some(pace))
 }
 
 fn clock(sim: &GlobeSim) -> Clock {
