@@ -4,4 +4,5 @@ pub mod evemu;
 pub mod maps;
 pub mod pile;
 pub mod planet;
+pub mod touching;
 pub mod window;
