@@ -82,13 +82,51 @@ impl Crust {
     }
 }
 
+/// A bit for each sample of the lattice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Marks(Vec<u64>);
+
+impl Marks {
+    /// Marks of `members` among `samples`.
+    pub(super) fn new(samples: usize, members: impl IntoIterator<Item = u32>) -> Self {
+        let mut bits = vec![0_u64; samples.div_ceil(64)];
+        for i in members {
+            bits[i as usize / 64] |= 1 << (i % 64);
+        }
+        Self(bits)
+    }
+
+    /// True for a sample that is marked.
+    pub(super) fn contains(&self, i: u32) -> bool {
+        self.0[i as usize / 64] >> (i % 64) & 1 == 1
+    }
+
+    /// Takes a mark away. True where there was one.
+    pub(super) fn remove(&mut self, i: u32) -> bool {
+        let word = &mut self.0[i as usize / 64];
+        let was = *word >> (i % 64) & 1 == 1;
+        *word &= !(1 << (i % 64));
+        was
+    }
+
+    /// The samples that are marked, ascending.
+    pub(super) fn iter(&self) -> impl Iterator<Item = u32> {
+        let words = (0..).zip(&self.0);
+        words.flat_map(|(number, &word)| {
+            std::iter::successors(Some(word), |rest| Some(rest & rest.wrapping_sub(1)))
+                .take_while(|rest| *rest != 0)
+                .map(move |rest| number * 64 + rest.trailing_zeros())
+        })
+    }
+}
+
 /// A set of samples of the lattice, with its members numbered in their order ("slots").
 ///
 /// A bit per sample of the lattice and a count per word: membership and slot take constant time, and forty plates of
 /// half a million samples take four megabytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SampleSet {
-    bits: Vec<u64>,
+    marks: Marks,
     /// Members before each word.
     before: Vec<u32>,
 }
@@ -96,27 +134,24 @@ pub struct SampleSet {
 impl SampleSet {
     /// The set of `members`, which ascend, of a lattice of `samples`.
     pub fn new(samples: usize, members: &[u32]) -> Self {
-        let mut bits = vec![0_u64; samples.div_ceil(64)];
-        for &i in members {
-            bits[i as usize / 64] |= 1 << (i % 64);
-        }
-        let mut before = Vec::with_capacity(bits.len());
+        let marks = Marks::new(samples, members.iter().copied());
+        let mut before = Vec::with_capacity(marks.0.len());
         let mut count = 0;
-        for word in &bits {
+        for word in &marks.0 {
             before.push(count);
             count += word.count_ones();
         }
-        Self { bits, before }
+        Self { marks, before }
     }
 
     /// True for members.
     pub fn contains(&self, i: u32) -> bool {
-        self.bits[i as usize / 64] >> (i % 64) & 1 == 1
+        self.marks.contains(i)
     }
 
     /// The number of a member.
     pub fn slot(&self, i: u32) -> Option<u32> {
-        let word = self.bits[i as usize / 64];
+        let word = self.marks.0[i as usize / 64];
         let bit = i % 64;
         (word >> bit & 1 == 1)
             .then(|| self.before[i as usize / 64] + (word & ((1_u64 << bit) - 1)).count_ones())

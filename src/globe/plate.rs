@@ -3,9 +3,12 @@
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
-use super::crust::{Crust, SampleSet};
+use super::crust::{Crust, Marks, SampleSet};
 use crate::sphere::{Lattice, RADIUS_KM};
 use crate::surface::planet::Grip;
+
+/// Slots that are looked up one after the other.
+const BLOCK: usize = 4096;
 
 /// A plate. Its samples are samples of the one lattice, seen in the plate's own frame: when it moves, only `rotation`
 /// changes, and its crust stays as it is, to the bit.
@@ -174,23 +177,24 @@ impl Plate {
         let mut region = vec![u32::MAX; self.len()];
         let mut sizes = Vec::new();
         let mut open = Vec::new();
-        for start in 0..self.len() as u32 {
-            if region[start as usize] != u32::MAX || !belongs(start) {
+        // Those that no region has yet.
+        let mut left = Marks::new(lattice.len(), self.samples_where(belongs));
+        for (start, &i) in self.members.iter().enumerate() {
+            if !left.remove(i) {
                 continue;
             }
             let number = sizes.len() as u32;
             let mut size = 0;
-            region[start as usize] = number;
-            open.push(start);
-            while let Some(slot) = open.pop() {
+            region[start] = number;
+            open.push(i);
+            while let Some(i) = open.pop() {
                 size += 1;
-                for &n in lattice.neighbours(self.members[slot as usize]) {
-                    if let Some(next) = self.slot(n)
-                        && region[next as usize] == u32::MAX
-                        && belongs(next)
+                for &n in lattice.neighbours(i) {
+                    if left.remove(n)
+                        && let Some(slot) = self.slot(n)
                     {
-                        region[next as usize] = number;
-                        open.push(next);
+                        region[slot as usize] = number;
+                        open.push(n);
                     }
                 }
             }
@@ -199,12 +203,32 @@ impl Plate {
         (region, sizes)
     }
 
+    /// The samples of the slots that `belongs` names.
+    pub(super) fn samples_where(&self, belongs: impl Fn(u32) -> bool) -> impl Iterator<Item = u32> {
+        let slots = (0..).zip(&self.members);
+        slots.filter(move |&(slot, _)| belongs(slot)).map(|(_, &i)| i)
+    }
+
     /// The world's sample whose cell holds each of the plate's samples.
     pub(super) fn cells(&self, lattice: &Lattice) -> Vec<u32> {
-        self.members
-            .par_iter()
-            .with_min_len(2048)
-            .map(|&i| lattice.nearest(self.rotation * lattice.point(i)))
-            .collect()
+        let mut cells = vec![0; self.len()];
+        let blocks = cells.par_chunks_mut(BLOCK).enumerate();
+        blocks.for_each(|(block, cells)| {
+            let first = block * BLOCK;
+            for k in 0..cells.len() {
+                let i = self.members[first + k];
+                let p = self.rotation * lattice.point(i);
+                // Neighbours fall side by side. (Those before it in the block are known.)
+                let before = lattice.neighbours(i).iter().filter(|&&n| n < i);
+                let known = before
+                    .filter_map(|&n| self.slot(n))
+                    .find(|&slot| slot as usize >= first);
+                cells[k] = match known {
+                    Some(slot) => lattice.nearest_from(p, cells[slot as usize - first]),
+                    None => lattice.nearest(p),
+                };
+            }
+        });
+        cells
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::crust::Crust;
+use super::crust::{Crust, Marks};
 use super::params::GlobeParams;
 use super::planet::Totals;
 use super::plate::Plate;
@@ -122,15 +122,15 @@ pub(super) fn fill_basins(plates: &mut [Plate], lattice: &Lattice, params: &Glob
     let most = (params.basin_mkm2 / sample_mkm2).max(3.0) as u32;
     plates.par_iter_mut().for_each(|plate| {
         let (region, sizes) = plate.regions(lattice, |slot| !plate.crust[slot as usize].continental);
-        let mut open = vec![false; sizes.len()];
-        for (slot, &number) in region.iter().enumerate() {
-            if number != u32::MAX {
-                let around = lattice.neighbours(plate.members()[slot]);
-                open[number as usize] |= around.iter().any(|&n| !plate.contains(n));
+        // What is larger does not fill, whether it is open or not.
+        let mut open: Vec<bool> = sizes.iter().map(|size| *size > most).collect();
+        for (&number, &i) in region.iter().zip(plate.members()) {
+            if number != u32::MAX && !open[number as usize] {
+                open[number as usize] = lattice.neighbours(i).iter().any(|&n| !plate.contains(n));
             }
         }
         for (slot, &number) in region.iter().enumerate() {
-            if number == u32::MAX || open[number as usize] || sizes[number as usize] > most {
+            if number == u32::MAX || open[number as usize] {
                 continue;
             }
             let crust = &mut plate.crust[slot];
@@ -146,17 +146,14 @@ pub(super) fn fill_basins(plates: &mut [Plate], lattice: &Lattice, params: &Glob
 
 /// For each slot: continental crust next to sea floor of its own plate.
 pub(super) fn margins(plate: &Plate, lattice: &Lattice, params: &GlobeParams) -> Vec<bool> {
-    let is_sea = |n: &u32| {
-        plate
-            .slot(*n)
-            .is_some_and(|slot| !plate.crust[slot as usize].continental)
-    };
+    if !params.margin_my.is_finite() {
+        return vec![false; plate.len()];
+    }
+    let is_sea = |slot: u32| !plate.crust[slot as usize].continental;
+    let sea = Marks::new(lattice.len(), plate.samples_where(is_sea));
+    let at_sea = |i: u32| lattice.neighbours(i).iter().any(|&n| sea.contains(n));
     let slots = plate.crust.iter().zip(plate.members());
-    slots
-        .map(|(crust, &i)| {
-            params.margin_my.is_finite() && crust.continental && lattice.neighbours(i).iter().any(is_sea)
-        })
-        .collect()
+    slots.map(|(crust, &i)| crust.continental && at_sea(i)).collect()
 }
 
 /// A margin without mountain building cools and sinks to a shelf.

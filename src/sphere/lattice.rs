@@ -103,6 +103,24 @@ impl Lattice {
         self.inverse.nearest(p, &self.points)
     }
 
+    /// As [`Self::nearest`], from a sample that is near already: in a Delaunay triangulation a sample that has no neighbour
+    /// nearer to `p` is the nearest of all.
+    pub fn nearest_from(&self, p: DVec3, near: u32) -> u32 {
+        let (mut best, mut best_dot) = (near, self.point(near).dot(p));
+        loop {
+            let from = best;
+            for &n in self.neighbours(from) {
+                let dot = self.point(n).dot(p);
+                if dot > best_dot {
+                    (best, best_dot) = (n, dot);
+                }
+            }
+            if best == from {
+                return best;
+            }
+        }
+    }
+
     /// The triangle that holds `p`, a unit vector, and its barycentric weights there (they sum to 1, none is negative).
     pub fn locate(&self, p: DVec3) -> ([u32; 3], [f64; 3]) {
         let nearest = self.nearest(p);
