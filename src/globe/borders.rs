@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cover::{Cover, NOBODY};
-use super::crust::Crust;
+use super::crust::{Crust, Marks};
 use super::params::GlobeParams;
 use super::plate::Plate;
 use super::terranes::Terranes;
@@ -50,21 +50,17 @@ pub(super) fn meetings(cover: &Cover, plates: &[Plate], lattice: &Lattice) -> Ve
         let around = lattice.neighbours(cell).iter().copied();
         around.filter(move |&n| own != NOBODY && owner(n) != NOBODY && owner(n) != own)
     };
-    let outward: Vec<DVec3> = (0..lattice.len() as u32)
-        .into_par_iter()
-        .with_min_len(2048)
-        .map(|a| others(a).map(|b| lattice.point(b) - lattice.point(a)).sum())
-        .collect();
+    let outward = |a: u32| -> DVec3 { others(a).map(|b| lattice.point(b) - lattice.point(a)).sum() };
     let looks = |cell: u32| -> DVec3 {
-        let around = lattice
-            .neighbours(cell)
-            .iter()
-            .filter(|&&n| owner(n) == owner(cell));
-        outward[cell as usize] + around.map(|&n| outward[n as usize]).sum::<DVec3>()
+        let around = lattice.neighbours(cell).iter().copied();
+        let same = around.filter(|&n| owner(n) == owner(cell));
+        outward(cell) + same.map(outward).sum::<DVec3>()
     };
-    (0..lattice.len() as u32)
-        .into_par_iter()
-        .with_min_len(2048)
+    let near = cover.band.iter().flat_map(|&cell| lattice.neighbours(cell));
+    let near = Marks::new(lattice.len(), near.chain(&cover.band).copied());
+    let near: Vec<u32> = near.iter().filter(|&a| others(a).next().is_some()).collect();
+    near.into_par_iter()
+        .with_min_len(256)
         .flat_map_iter(|a| {
             others(a).filter(move |&b| b > a).map(move |b| {
                 let middle = (lattice.point(a) + lattice.point(b)).normalize();

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::borders::Polarities;
 use super::cover::{Contest, Cover};
-use super::distance::Nearest;
+use super::distance::{Nearest, Numbers};
 use super::params::{GlobeParams, Reach};
 use super::planet::Totals;
 use super::plate::Plate;
@@ -77,39 +77,37 @@ fn sutures(plates: &[Plate], polarities: &mut Polarities, scene: &Scene<'_>) -> 
     let (cover, lattice) = (scene.cover, scene.lattice);
     // For each contested place the continental crust below another plate, if any.
     let mut under: Vec<(u16, u32, u16)> = Vec::new();
-    let mut place = vec![u32::MAX; lattice.len()];
+    let mut place = Numbers::new(lattice);
     for contest in &cover.contests {
         if let Some(pair) = plunging_land(plates, polarities, contest, scene) {
-            place[contest.cell as usize] = under.len() as u32;
+            place.set(contest.cell, under.len() as u32);
             under.push(pair);
         }
     }
     // How far each has come: distance to where its plate is alone.
     let mut sources = Vec::new();
-    for contest in cover
-        .contests
-        .iter()
-        .filter(|contest| place[contest.cell as usize] != u32::MAX)
-    {
-        let (plate, _, _) = under[place[contest.cell as usize] as usize];
+    for contest in &cover.contests {
+        let Some(number) = place.get(contest.cell) else {
+            continue;
+        };
+        let (plate, _, _) = under[number as usize];
         for &n in lattice.neighbours(contest.cell) {
-            if cover.owner[n as usize] == plate && place[n as usize] == u32::MAX {
+            if cover.owner[n as usize] == plate && place.get(n).is_none() {
                 sources.push((n, lattice.point(n)));
             }
         }
     }
     let owner_of = |source: u32| cover.owner[sources[source as usize].0 as usize];
     let nearest = Nearest::new(lattice, &sources, std::f64::consts::PI, |source, cell| {
-        let at = place[cell as usize];
-        at != u32::MAX && under[at as usize].0 == owner_of(source)
+        let place = place.get(cell);
+        place.is_some_and(|number| under[number as usize].0 == owner_of(source))
     });
     let mut found: BTreeMap<(u16, u32, u16), Overlap> = BTreeMap::new();
     for contest in &cover.contests {
-        let at = place[contest.cell as usize];
-        if at == u32::MAX {
+        let Some(number) = place.get(contest.cell) else {
             continue;
-        }
-        let (from, slot, to) = under[at as usize];
+        };
+        let (from, slot, to) = under[number as usize];
         let depth_km = nearest
             .of(contest.cell, lattice.point(contest.cell), &sources)
             .map_or(f64::INFINITY, |(_, arc)| arc * RADIUS_KM);

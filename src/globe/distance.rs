@@ -3,17 +3,32 @@
 use crate::sphere::{Lattice, arc};
 use glam::DVec3;
 
-/// Marks a sample that no source reaches.
-pub(super) const NO_SOURCE: u32 = u32::MAX;
+/// A number for some of the lattice's samples. (Where none has one, the table takes no memory: it is zero.)
+#[derive(Clone, Debug)]
+pub(super) struct Numbers(Vec<u32>);
+
+impl Numbers {
+    /// Nobody has a number.
+    pub(super) fn new(lattice: &Lattice) -> Self {
+        Self(vec![0; lattice.len()])
+    }
+
+    /// Gives a sample a number.
+    pub(super) fn set(&mut self, sample: u32, number: u32) {
+        self.0[sample as usize] = number + 1;
+    }
+
+    /// A sample's number.
+    pub(super) fn get(&self, sample: u32) -> Option<u32> {
+        self.0[sample as usize].checked_sub(1)
+    }
+}
 
 /// For each sample the source nearest to it, found by handing sources on from neighbour to neighbour and measuring the true
 /// distance (`globe-physics` GC5: the mean error is below 0.03 %).
 #[derive(Clone, Debug)]
 pub(super) struct Nearest {
-    /// Source of each sample, or [`NO_SOURCE`].
-    pub(super) source: Vec<u32>,
-    /// Cosine of the distance.
-    cosine: Vec<f64>,
+    source: Numbers,
 }
 
 impl Nearest {
@@ -26,31 +41,33 @@ impl Nearest {
         passes: impl Fn(u32, u32) -> bool,
     ) -> Self {
         let least = limit.min(std::f64::consts::PI).cos();
-        let mut nearest = Self {
-            source: vec![NO_SOURCE; lattice.len()],
-            cosine: vec![f64::NEG_INFINITY; lattice.len()],
+        let mut source = Numbers::new(lattice);
+        // Cosine of the distance of a sample from the source that it has now.
+        let cosine = |source: &Numbers, sample: u32| {
+            source.get(sample).map_or(f64::NEG_INFINITY, |number| {
+                lattice.point(sample).dot(sources[number as usize].1)
+            })
         };
         let mut front = Vec::new();
         for (number, &(sample, at)) in sources.iter().enumerate() {
-            let cosine = lattice.point(sample).dot(at);
-            if cosine > nearest.cosine[sample as usize] {
-                if nearest.source[sample as usize] == NO_SOURCE {
+            if lattice.point(sample).dot(at) > cosine(&source, sample) {
+                if source.get(sample).is_none() {
                     front.push(sample);
                 }
-                nearest.source[sample as usize] = number as u32;
-                nearest.cosine[sample as usize] = cosine;
+                source.set(sample, number as u32);
             }
         }
         let mut next = Vec::new();
         while !front.is_empty() {
             for &sample in &front {
-                let source = nearest.source[sample as usize];
-                let at = sources[source as usize].1;
+                let Some(number) = source.get(sample) else {
+                    continue;
+                };
+                let at = sources[number as usize].1;
                 for &n in lattice.neighbours(sample) {
-                    let cosine = lattice.point(n).dot(at);
-                    if cosine > nearest.cosine[n as usize] && cosine >= least && passes(source, n) {
-                        nearest.cosine[n as usize] = cosine;
-                        nearest.source[n as usize] = source;
+                    let here = lattice.point(n).dot(at);
+                    if here >= least && here > cosine(&source, n) && passes(number, n) {
+                        source.set(n, number);
                         next.push(n);
                     }
                 }
@@ -58,12 +75,17 @@ impl Nearest {
             front.clear();
             std::mem::swap(&mut front, &mut next);
         }
-        nearest
+        Self { source }
+    }
+
+    /// The source of a sample.
+    pub(super) fn source(&self, sample: u32) -> Option<u32> {
+        self.source.get(sample)
     }
 
     /// The source of a sample and its distance from `p`, radians.
     pub(super) fn of(&self, sample: u32, p: DVec3, sources: &[(u32, DVec3)]) -> Option<(u32, f64)> {
-        let source = self.source[sample as usize];
-        (source != NO_SOURCE).then(|| (source, arc(sources[source as usize].1, p)))
+        let source = self.source(sample)?;
+        Some((source, arc(sources[source as usize].1, p)))
     }
 }

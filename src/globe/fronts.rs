@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::borders::{Meeting, Polarities};
 use super::cover::Cover;
 use super::crust::Crust;
-use super::distance::{NO_SOURCE, Nearest};
+use super::distance::{Nearest, Numbers};
 use super::params::GlobeParams;
 use super::plate::Plate;
 use crate::sphere::{Lattice, RADIUS_KM};
@@ -61,7 +61,7 @@ impl Fronts {
         let mut pulls = vec![Pull::default(); plates.len()];
         let mut trench = vec![0.0_f32; lattice.len()];
         // Meetings of one sample are summed.
-        let mut at = vec![NO_SOURCE; lattice.len()];
+        let mut at = Numbers::new(lattice);
         let mut fronts: Vec<(Front, f64)> = Vec::new();
         let mut sources = Vec::new();
         for meeting in meetings {
@@ -101,16 +101,16 @@ impl Fronts {
                 motion: (plates[lower].velocity(middle) - plates[upper].velocity(middle)) * RADIUS_KM,
             };
             let cell = meeting.cells[up];
-            if at[cell as usize] == NO_SOURCE {
-                at[cell as usize] = fronts.len() as u32;
-                sources.push((cell, middle));
-                fronts.push((front, 1.0));
-            } else {
-                let (sum, count) = &mut fronts[at[cell as usize] as usize];
+            if let Some(number) = at.get(cell) {
+                let (sum, count) = &mut fronts[number as usize];
                 sum.closing += front.closing;
                 sum.plunging_km += front.plunging_km;
                 sum.motion += front.motion;
                 *count += 1.0;
+            } else {
+                at.set(cell, fronts.len() as u32);
+                sources.push((cell, middle));
+                fronts.push((front, 1.0));
             }
         }
         let mut fronts: Vec<Front> = fronts
@@ -212,7 +212,7 @@ fn goal_speed(slab: f64, land: f64, params: &GlobeParams) -> f64 {
 }
 
 /// Each front takes part in what its neighbours along the border feel.
-fn smoothed(fronts: &[Front], sources: &[(u32, DVec3)], at: &[u32], lattice: &Lattice) -> Vec<Front> {
+fn smoothed(fronts: &[Front], sources: &[(u32, DVec3)], at: &Numbers, lattice: &Lattice) -> Vec<Front> {
     fronts
         .par_iter()
         .zip(sources)
@@ -221,8 +221,8 @@ fn smoothed(fronts: &[Front], sources: &[(u32, DVec3)], at: &[u32], lattice: &La
             let mut sum = *front;
             let mut count = 1.0;
             for &n in lattice.neighbours(cell) {
-                if at[n as usize] != NO_SOURCE && fronts[at[n as usize] as usize].upper == front.upper {
-                    let other = &fronts[at[n as usize] as usize];
+                let other = at.get(n).map(|number| &fronts[number as usize]);
+                if let Some(other) = other.filter(|other| other.upper == front.upper) {
                     sum.closing += other.closing;
                     sum.plunging_km += other.plunging_km;
                     sum.motion += other.motion;

@@ -10,13 +10,14 @@ use rayon::prelude::*;
 use super::borders::{Meeting, Polarities, SEGMENTS, Strip, meetings};
 use super::collide::{self, collide};
 use super::cover::{Contest, Cover};
+use super::distance::Numbers;
 use super::fronts::Fronts;
 use super::noise::Noise;
 use super::params::GlobeParams;
 use super::plate::Plate;
 use super::random::{direction, unit};
 use super::rift::{self, Cut, RiftError};
-use super::spread;
+use super::spread::{self, Gap};
 use super::start::{Start, StartError};
 use super::terranes::Terranes;
 use super::tidy;
@@ -210,28 +211,11 @@ impl Planet {
             mean_area_km2: self.mean_area_km2,
         };
         let touched = collide(&mut self.plates, &mut self.polarities, &scene, &mut self.totals);
-        let areas: Vec<f64> = self
-            .plates
-            .par_iter_mut()
-            .zip(consumed)
-            .zip(touched)
-            .map(|((plate, gone), touched)| {
-                // Slots of a plate that has just taken or given part in a collision are others now; what it has below
-                // others is found again in the next step.
-                if touched || !gone.contains(&true) {
-                    return 0.0;
-                }
-                let areas = plate.members().iter().zip(&gone).filter(|(_, gone)| **gone);
-                let area: f64 = areas.map(|(&i, _)| lattice.areas()[i as usize]).sum();
-                plate.change(|slot| gone[slot as usize], Vec::new(), &lattice);
-                area
-            })
-            .collect();
-        self.totals.consumed_km2 += areas.iter().sum::<f64>() * RADIUS_KM * RADIUS_KM;
-        let (new, drawn) = spread::fill(&gaps, &mut self.plates, &lattice);
-        self.totals.created_km2 += new;
-        self.totals.drawn_out_km2 += drawn;
-        self.plates.retain(|plate| plate.len() > 0);
+        // Slots of a plate that has just taken or given part in a collision are others now; what it has below others is
+        // found again in the next step.
+        let gone = consumed.into_iter().zip(touched);
+        let gone = gone.map(|(gone, touched)| if touched { Vec::new() } else { gone });
+        self.exchange(&gone.collect::<Vec<_>>(), &gaps);
         self.rift_by_chance();
         if self.steps.is_multiple_of(TIDY_STEPS) {
             tidy::reunite(
@@ -348,9 +332,9 @@ impl Planet {
 
     /// For each plate and slot: it lies under another plate and goes down.
     fn consumed(&self, cover: &Cover) -> Vec<Vec<bool>> {
-        let mut contest_at = vec![u32::MAX; self.lattice.len()];
-        for (number, contest) in cover.contests.iter().enumerate() {
-            contest_at[contest.cell as usize] = number as u32;
+        let mut contest_at = Numbers::new(&self.lattice);
+        for (number, contest) in (0..).zip(&cover.contests) {
+            contest_at.set(contest.cell, number);
         }
         let plates = &self.plates;
         plates
@@ -358,10 +342,10 @@ impl Planet {
             .enumerate()
             .map(|(index, plate)| {
                 let goes = |slot: usize, cell: u32| {
-                    let contest = match contest_at[cell as usize] {
-                        u32::MAX => return false,
-                        number => &cover.contests[number as usize],
+                    let Some(number) = contest_at.get(cell) else {
+                        return false;
                     };
+                    let contest = &cover.contests[number as usize];
                     let at = self.lattice.point(cell);
                     let own = (index as u16, slot as u32);
                     let land = plate.crust[slot].continental;
@@ -385,6 +369,31 @@ impl Planet {
                 cells.map(|(slot, &cell)| goes(slot, cell)).collect()
             })
             .collect()
+    }
+
+    /// Crust goes where `gone` says (for each plate and slot; nothing for a plate without), and gaps are filled.
+    fn exchange(&mut self, gone: &[Vec<bool>], gaps: &[Gap]) {
+        let lattice = &self.lattice;
+        let grown = spread::grown(gaps, &self.plates, gone, lattice);
+        let consumed: Vec<f64> = self
+            .plates
+            .par_iter_mut()
+            .zip(gone)
+            .zip(grown.crust)
+            .map(|((plate, gone), added)| {
+                let areas = plate.members().iter().zip(gone).filter(|(_, gone)| **gone);
+                let area: f64 = areas.map(|(&i, _)| lattice.areas()[i as usize]).sum();
+                if area > 0.0 || !added.is_empty() {
+                    let goes = |slot: u32| gone.get(slot as usize).is_some_and(|gone| *gone);
+                    plate.change(goes, added, lattice);
+                }
+                area
+            })
+            .collect();
+        self.totals.consumed_km2 += consumed.iter().sum::<f64>() * RADIUS_KM * RADIUS_KM;
+        self.totals.created_km2 += grown.new_km2;
+        self.totals.drawn_out_km2 += grown.drawn_km2;
+        self.plates.retain(|plate| plate.len() > 0);
     }
 
     fn rift_by_chance(&mut self) {

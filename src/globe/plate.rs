@@ -102,6 +102,12 @@ impl Plate {
         self.slot(lattice.nearest(local))
     }
 
+    /// As [`Self::slot_at`], from a slot that is near.
+    pub(super) fn slot_near(&self, p: DVec3, near: u32, lattice: &Lattice) -> Option<u32> {
+        let local = self.rotation.inverse() * p;
+        self.slot(lattice.nearest_from(local, self.members[near as usize]))
+    }
+
     /// Where a slot is in the world.
     pub(super) fn position(&self, slot: u32, lattice: &Lattice) -> DVec3 {
         self.rotation * lattice.point(self.members[slot as usize])

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::cover::{Cover, NOBODY};
 use super::crust::Crust;
-use super::distance::Nearest;
+use super::distance::{Nearest, Numbers};
 use super::params::{GlobeParams, SeaFloor, gdh1_km};
 use super::plate::Plate;
 use crate::sphere::{Lattice, RADIUS_KM, arc};
@@ -69,7 +69,7 @@ struct Open<'a> {
 impl<'a> Open<'a> {
     fn new(cover: &'a Cover, plates: &'a [Plate], lattice: &'a Lattice) -> Self {
         let is_open = |cell: u32| cover.owner[cell as usize] == NOBODY;
-        let cells: Vec<u32> = (0..lattice.len() as u32).filter(|&cell| is_open(cell)).collect();
+        let cells: Vec<u32> = cover.band.iter().copied().filter(|&cell| is_open(cell)).collect();
         let mut edge = Vec::new();
         for &cell in &cells {
             for &n in lattice.neighbours(cell) {
@@ -111,10 +111,7 @@ impl<'a> Open<'a> {
     /// The covered sample whose crust is nearest: itself, or at an edge; and where that crust is.
     fn nearest_edge(&self, cell: u32) -> Option<(u32, DVec3)> {
         match self.cover.owner[cell as usize] {
-            NOBODY => self
-                .edge
-                .get(self.to_edge.source[cell as usize] as usize)
-                .copied(),
+            NOBODY => self.to_edge.source(cell).map(|source| self.edge[source as usize]),
             owner => {
                 let slot = self.cover.slot[cell as usize];
                 Some((cell, self.plates[owner as usize].position(slot, self.lattice)))
@@ -225,54 +222,71 @@ fn opening_mm_per_yr([a, b]: [&Plate; 2], [at_a, at_b]: [DVec3; 2]) -> f64 {
     (a.velocity(middle) - b.velocity(middle)).dot(across) * RADIUS_KM
 }
 
-/// Gives gaps to their plates. Returns new area and drawn-out area, km².
-pub(super) fn fill(gaps: &[Gap], plates: &mut [Plate], lattice: &Lattice) -> (f64, f64) {
-    let mut gap_at = vec![u32::MAX; lattice.len()];
-    for (number, gap) in gaps.iter().enumerate() {
-        gap_at[gap.cell as usize] = number as u32;
+/// What plates grow by.
+pub(super) struct Grown {
+    /// For each plate the samples it takes, in its frame.
+    pub(super) crust: Vec<Vec<(u32, Crust)>>,
+    /// New area, km².
+    pub(super) new_km2: f64,
+    /// Area of crust that was drawn out, km².
+    pub(super) drawn_km2: f64,
+}
+
+/// Gives gaps to their plates, of which the slots that `gone` names are about to go.
+pub(super) fn grown(gaps: &[Gap], plates: &[Plate], gone: &[Vec<bool>], lattice: &Lattice) -> Grown {
+    let mut gap_at = Numbers::new(lattice);
+    for (number, gap) in (0..).zip(gaps) {
+        gap_at.set(gap.cell, number);
     }
     let mut own: Vec<Vec<&Gap>> = vec![Vec::new(); plates.len()];
     for gap in gaps {
         own[gap.plate as usize].push(gap);
     }
-    let areas: Vec<(f64, f64)> = plates
-        .par_iter_mut()
+    let taken: Vec<(Vec<(u32, Crust)>, f64, f64)> = plates
+        .par_iter()
+        .zip(gone)
         .zip(own)
         .enumerate()
-        .map(|(index, (plate, own))| {
+        .map(|(index, ((plate, gone), own))| {
+            let stays = |slot: u32| gone.get(slot as usize).is_none_or(|gone| !gone);
+            let has = |i: u32| plate.slot(i).is_some_and(stays);
             let mut added: BTreeMap<u32, &Gap> = BTreeMap::new();
             for gap in own {
                 let i = lattice.nearest(plate.rotation.inverse() * lattice.point(gap.cell));
-                if !plate.contains(i) {
+                if !has(i) {
                     added.entry(i).or_insert(gap);
                 }
                 // Samples of the plate whose cells no sample of the world falls into.
                 for &n in lattice.neighbours(i) {
-                    if plate.contains(n) || added.contains_key(&n) {
+                    if has(n) || added.contains_key(&n) {
                         continue;
                     }
-                    let cell = lattice.nearest(plate.rotation * lattice.point(n));
-                    if let Some(there) = gaps.get(gap_at[cell as usize] as usize)
-                        && there.plate as usize == index
-                    {
+                    let cell = lattice.nearest_from(plate.rotation * lattice.point(n), gap.cell);
+                    let there = gap_at.get(cell).map(|number| &gaps[number as usize]);
+                    if let Some(there) = there.filter(|there| there.plate as usize == index) {
                         added.insert(n, there);
                     }
                 }
             }
-            take(plate, added, lattice)
+            taken(plate, added, lattice)
         })
         .collect();
-    areas
-        .into_iter()
-        .fold((0.0, 0.0), |sum, area| (sum.0 + area.0, sum.1 + area.1))
+    let mut grown = Grown {
+        crust: Vec::with_capacity(taken.len()),
+        new_km2: 0.0,
+        drawn_km2: 0.0,
+    };
+    for (crust, new_km2, drawn_km2) in taken {
+        grown.crust.push(crust);
+        grown.new_km2 += new_km2;
+        grown.drawn_km2 += drawn_km2;
+    }
+    grown
 }
 
-/// Lets a plate have samples. Returns new area and drawn-out area, km².
-fn take(plate: &mut Plate, added: BTreeMap<u32, &Gap>, lattice: &Lattice) -> (f64, f64) {
+/// Samples that a plate takes, with their crust in its frame; new area and drawn-out area, km².
+fn taken(plate: &Plate, added: BTreeMap<u32, &Gap>, lattice: &Lattice) -> (Vec<(u32, Crust)>, f64, f64) {
     let (mut new_km2, mut drawn_km2) = (0.0, 0.0);
-    if added.is_empty() {
-        return (0.0, 0.0);
-    }
     let back = plate.rotation.inverse();
     let crust = added.into_iter().map(|(i, gap)| {
         let area = lattice.areas()[i as usize] * RADIUS_KM * RADIUS_KM;
@@ -280,6 +294,5 @@ fn take(plate: &mut Plate, added: BTreeMap<u32, &Gap>, lattice: &Lattice) -> (f6
         (i, gap.crust.turned(back))
     });
     let crust = crust.collect();
-    plate.change(|_| false, crust, lattice);
-    (new_km2, drawn_km2)
+    (crust, new_km2, drawn_km2)
 }
