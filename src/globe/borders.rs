@@ -148,23 +148,25 @@ impl Polarities {
     /// Decides for all segments that close. Continents stay on top of oceans; between oceans the younger side does; a front
     /// that exists turns around only where that is clear, and not soon.
     pub(super) fn decide(&mut self, strip: &Strip<'_>, meetings: &[Meeting], now_my: f64) {
+        let closing: Vec<(Segment, bool, [(u16, u32); 2])> = meetings
+            .par_iter()
+            .with_min_len(256)
+            .filter(|meeting| meeting.closing > strip.params.least_closing)
+            .map(|meeting| {
+                let covers = meeting.cells.map(|cell| strip.cover.top(cell));
+                let (pair, at) = (covers.map(|cover| cover.0), meeting.at(strip.lattice));
+                let (segment, swapped) = segment(strip.plates, pair, at, strip.coarse);
+                (segment, swapped, covers)
+            })
+            .collect();
         let mut votes: BTreeMap<Segment, Votes> = BTreeMap::new();
-        let mut cast = |at: DVec3, covers: [(u16, u32); 2]| {
-            let (segment, swapped) = segment(strip.plates, [covers[0].0, covers[1].0], at, strip.coarse);
+        for (segment, swapped, covers) in closing {
             let vote = votes.entry(segment).or_default();
             for (k, (plate, slot)) in covers.into_iter().enumerate() {
                 let crust = &strip.plates[plate as usize].crust[slot as usize];
                 let is_land = crust.continental
                     && strip.terranes[plate as usize].area_mkm2(slot) >= strip.params.terrane_mkm2;
                 vote.cast(if swapped { 1 - k } else { k }, crust, is_land);
-            }
-        };
-        for meeting in meetings {
-            if meeting.closing > strip.params.least_closing {
-                let covers = meeting
-                    .cells
-                    .map(|cell| (strip.cover.owner[cell as usize], strip.cover.slot[cell as usize]));
-                cast(meeting.at(strip.lattice), covers);
             }
         }
         let sizes: Vec<usize> = strip.plates.iter().map(Plate::len).collect();

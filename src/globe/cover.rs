@@ -180,6 +180,11 @@ impl Cover {
         }
     }
 
+    /// The plate on top of a place that some plate covers, and its slot there.
+    pub(super) fn top(&self, cell: u32) -> Over {
+        (self.owner[cell as usize], self.slot[cell as usize])
+    }
+
     /// Lets the plate that `upper` names be on top of a contested place.
     pub(super) fn settle(&mut self, upper: impl Fn(&Contest) -> Over + Sync + Send) {
         let contests = self.contests.par_iter().with_min_len(256);

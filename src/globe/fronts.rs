@@ -64,10 +64,17 @@ impl Fronts {
         let mut at = Numbers::new(lattice);
         let mut fronts: Vec<(Front, f64)> = Vec::new();
         let mut sources = Vec::new();
-        for meeting in meetings {
-            let covers = meeting
-                .cells
-                .map(|cell| (cover.owner[cell as usize], cover.slot[cell as usize]));
+        let firsts_up: Vec<bool> = meetings
+            .par_iter()
+            .with_min_len(256)
+            .map(|meeting| {
+                let covers = meeting.cells.map(|cell| cover.top(cell));
+                meeting.closing > params.least_closing
+                    && polarities.first_is_upper(plates, covers, meeting.at(lattice), coarse)
+            })
+            .collect();
+        for (meeting, first_is_upper) in meetings.iter().zip(firsts_up) {
+            let covers = meeting.cells.map(|cell| cover.top(cell));
             let middle = meeting.at(lattice);
             for (plate, _) in covers {
                 pulls[plate as usize].border += 1.0;
@@ -75,7 +82,6 @@ impl Fronts {
             if meeting.closing <= params.least_closing {
                 continue;
             }
-            let first_is_upper = polarities.first_is_upper(plates, covers, middle, coarse);
             let (up, low) = if first_is_upper { (0, 1) } else { (1, 0) };
             let (upper, lower) = (covers[up].0 as usize, covers[low].0 as usize);
             let crust = &plates[lower].crust[covers[low].1 as usize];

@@ -157,8 +157,10 @@ impl Planet {
         self.time_my += dt;
         self.steps += 1;
         let lattice = Arc::clone(&self.lattice);
-        let terranes = Terranes::of_all(&self.plates, &lattice);
-        let mut cover = Cover::new(&self.plates, &lattice);
+        let (terranes, mut cover) = rayon::join(
+            || Terranes::of_all(&self.plates, &lattice),
+            || Cover::new(&self.plates, &lattice),
+        );
         self.settle(&mut cover);
         let met = meetings(&cover, &self.plates, &lattice);
         let strip = Strip {
@@ -185,21 +187,18 @@ impl Planet {
         let spreads = self
             .steps
             .is_multiple_of(u64::from(self.params.spread_steps.max(1)));
-        let gaps = if spreads {
-            let since_my = self.time_my - self.spread_my;
-            self.spread_my = self.time_my;
-            spread::gaps(
-                &cover,
-                &self.plates,
-                &self.noise,
-                &lattice,
-                since_my,
-                &self.params,
-            )
-        } else {
-            Vec::new()
+        let since_my = self.time_my - self.spread_my;
+        let gaps = || {
+            let (plates, noise) = (&self.plates, &self.noise);
+            spread::gaps(&cover, plates, noise, &lattice, since_my, &self.params)
         };
-        let consumed = self.consumed(&cover);
+        let (gaps, consumed) = rayon::join(
+            || if spreads { gaps() } else { Vec::new() },
+            || self.consumed(&cover),
+        );
+        if spreads {
+            self.spread_my = self.time_my;
+        }
         let scene = collide::Scene {
             cover: &cover,
             terranes: &terranes,
@@ -262,9 +261,7 @@ impl Planet {
 
     /// True where the first plate of a meeting is on top.
     pub(super) fn first_is_upper(&self, meeting: &Meeting, cover: &Cover) -> bool {
-        let covers = meeting
-            .cells
-            .map(|cell| (cover.owner[cell as usize], cover.slot[cell as usize]));
+        let covers = meeting.cells.map(|cell| cover.top(cell));
         self.polarities
             .first_is_upper(&self.plates, covers, meeting.at(&self.lattice), &self.coarse)
     }
