@@ -114,17 +114,24 @@ fn planar_stars(points: &[DVec3]) -> Vec<Vec<u32>> {
     stars
 }
 
-/// Cosine of the distance from `p` to the sample nearest to it, by a search of all at about its height.
-fn nearest_by_search(lattice: &Lattice, p: DVec3) -> f64 {
-    let n = lattice.len() as f64;
-    // No place is farther from all samples than one spacing.
-    let reach = lattice.spacing();
-    let index = |z: f64| ((1.0 - z) * n / 2.0).clamp(0.0, n);
-    let band = index(p.z + reach) as usize..(index(p.z - reach).ceil() as usize).min(lattice.len());
-    let cosines = lattice.points()[band].iter().map(|q| q.dot(p));
-    let best = cosines.fold(-1.0, f64::max);
-    assert!(best > reach.cos(), "a hole at {p}");
-    best
+/// Samples by height, to be searched.
+struct Search(Vec<DVec3>, f64);
+
+impl Search {
+    fn new(lattice: &Lattice) -> Self {
+        let mut points = lattice.points().to_vec();
+        points.sort_by(|a, b| a.z.total_cmp(&b.z));
+        Self(points, lattice.spacing())
+    }
+
+    /// Cosine of the distance from `p` to the sample nearest to it: no place is farther from all than one spacing.
+    fn nearest(&self, p: DVec3) -> f64 {
+        let from = self.0.partition_point(|q| q.z < p.z - self.1);
+        let to = self.0.partition_point(|q| q.z <= p.z + self.1);
+        let best = self.0[from..to].iter().map(|q| q.dot(p)).fold(-1.0, f64::max);
+        assert!(best > self.1.cos(), "a hole at {p}");
+        best
+    }
 }
 
 fn check_areas(lattice: &Lattice) {
@@ -212,14 +219,18 @@ fn every_sample_is_nearest_to_itself() {
 fn the_nearest_sample_is_the_one_a_search_finds() {
     for samples in [1_000, 10_007, 60_000] {
         let lattice = Lattice::new(samples).unwrap();
+        let search = Search::new(&lattice);
         let queries = directions(100_000).chain(polar(lattice.spacing()));
         for p in queries {
-            let found = lattice.point(lattice.nearest(p)).dot(p);
+            let nearest = lattice.nearest(p);
+            let found = lattice.point(nearest).dot(p);
+            let somewhere = lattice.neighbours(lattice.neighbours(nearest)[0])[2];
+            for near in [somewhere, 0] {
+                let walked = lattice.point(lattice.nearest_from(p, near)).dot(p);
+                assert_eq!(walked, found, "{p} from {near}");
+            }
             // Two samples as near as each other to rounding are both right.
-            assert!(
-                found >= nearest_by_search(&lattice, p) - 1e-15,
-                "{p} of {samples}"
-            );
+            assert!(found >= search.nearest(p) - 1e-15, "{p} of {samples}");
         }
     }
 }
@@ -290,6 +301,6 @@ proptest! {
         check_areas(&lattice);
         let p = DVec3::new(x, y, z).try_normalize().unwrap_or(DVec3::X);
         let found = lattice.point(lattice.nearest(p)).dot(p);
-        prop_assert!(found >= nearest_by_search(&lattice, p) - 1e-15);
+        prop_assert!(found >= Search::new(&lattice).nearest(p) - 1e-15);
     }
 }

@@ -10,6 +10,9 @@ use super::mesh::Mesh;
 /// Least and greatest number of samples.
 pub const SAMPLES_RANGE: (usize, usize) = (1_000, 1_000_000);
 
+/// Samples of a tile: points and neighbours of that many fit into the nearest cache.
+const TILE: usize = 100;
+
 /// Least weight of a corner, of all three together, at which a place still counts as inside a triangle. Rounding makes
 /// 10⁻¹¹ of the smallest triangles.
 const ON_EDGE: f64 = 1e-10;
@@ -33,14 +36,18 @@ pub enum LatticeError {
 
 /// Nearly evenly spread samples on the unit sphere, their Delaunay triangulation and the inverse look-up.
 ///
-/// Sample `i` of `n` lies at height `z = 1 − (2i + 1)/n` and longitude `2π frac(i/φ)` (spherical Fibonacci point set,
-/// Keinert et al. 2015). Areas of cells differ by 12 % at most, and any rotation of the sphere can be looked up in constant
-/// time: samples need not move when plates do.
+/// Turn `t` of `n` on the spiral is the sample at height `z = 1 − (2t + 1)/n` and longitude `2π frac(t/φ)` (spherical
+/// Fibonacci point set, Keinert et al. 2015). Areas of cells differ by 12 % at most, and any rotation of the sphere can be
+/// looked up in constant time: samples need not move when plates do.
+///
+/// Samples are numbered tile by tile, so that what lies near each other on the sphere does in memory, too.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     points: Vec<DVec3>,
     mesh: Mesh,
     inverse: Inverse,
+    /// The number of the sample at each turn of the spiral.
+    numbers: Vec<u32>,
 }
 
 impl Lattice {
@@ -52,13 +59,19 @@ impl Lattice {
         if !(SAMPLES_RANGE.0..=SAMPLES_RANGE.1).contains(&samples) {
             return Err(LatticeError::Size { found: samples });
         }
-        let points: Vec<DVec3> = (0..samples).into_par_iter().map(|i| sample(i, samples)).collect();
+        let spiral = spiral(samples);
         let inverse = Inverse::new(samples);
-        let mesh = Mesh::new(&points, &inverse).ok_or(LatticeError::Open(samples))?;
+        let turns = by_tiles(&spiral);
+        let mut numbers = vec![0; samples];
+        for (number, &turn) in (0..).zip(&turns) {
+            numbers[turn as usize] = number;
+        }
+        let mesh = Mesh::new(&spiral, &inverse, &turns, &numbers).ok_or(LatticeError::Open(samples))?;
         Ok(Self {
-            points,
+            points: turns.iter().map(|&turn| spiral[turn as usize]).collect(),
             mesh,
             inverse,
+            numbers,
         })
     }
 
@@ -100,7 +113,16 @@ impl Lattice {
 
     /// The sample nearest to `p`, a unit vector, in constant time (inverse Fibonacci mapping, Keinert et al. 2015).
     pub fn nearest(&self, p: DVec3) -> u32 {
-        self.inverse.nearest(p, &self.points)
+        let turns = self.inverse.around(p);
+        let mut best = (0, f64::NEG_INFINITY);
+        for turn in turns {
+            let number = self.numbers[turn];
+            let dot = self.point(number).dot(p);
+            if dot > best.1 {
+                best = (number, dot);
+            }
+        }
+        best.0
     }
 
     /// As [`Self::nearest`], from a sample that is near already: in a Delaunay triangulation a sample that has no neighbour
@@ -184,12 +206,29 @@ struct Located {
     least: f64,
 }
 
-/// Sample `i` of `n`.
-fn sample(i: usize, n: usize) -> DVec3 {
-    let z = 1.0 - (2 * i + 1) as f64 / n as f64;
-    let radius = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = (TAU * (i as f64 * (GOLDEN - 1.0)).fract()).sin_cos();
-    DVec3::new(radius * cos, radius * sin, z)
+/// The samples in the order of the spiral.
+fn spiral(samples: usize) -> Vec<DVec3> {
+    let sample = |turn: usize| {
+        let z = 1.0 - (2 * turn + 1) as f64 / samples as f64;
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        let (sin, cos) = (TAU * (turn as f64 * (GOLDEN - 1.0)).fract()).sin_cos();
+        DVec3::new(radius * cos, radius * sin, z)
+    };
+    (0..samples).into_par_iter().map(sample).collect()
+}
+
+/// Turns of the spiral, tile by tile: the tiles are the cells of a much coarser spiral.
+fn by_tiles(points: &[DVec3]) -> Vec<u32> {
+    let tiles = spiral(points.len() / TILE);
+    let inverse = Inverse::new(tiles.len());
+    let tile_of = |p: &DVec3| {
+        let turns = inverse.around(*p).into_iter();
+        turns.max_by(|&a, &b| tiles[a].dot(*p).total_cmp(&tiles[b].dot(*p)))
+    };
+    let tile: Vec<Option<usize>> = points.par_iter().map(tile_of).collect();
+    let mut turns: Vec<u32> = (0..points.len() as u32).collect();
+    turns.par_sort_by_key(|&turn| tile[turn as usize]);
+    turns
 }
 
 /// For each zone of latitude, the cell of the lattice that neighbouring samples span there.
@@ -244,26 +283,21 @@ impl Inverse {
             .unwrap_or(0)
     }
 
-    fn nearest(&self, p: DVec3, points: &[DVec3]) -> u32 {
+    /// Turns of the spiral among which the one nearest to `p` is.
+    fn around(&self, p: DVec3) -> [usize; 4] {
         let z = p.z.clamp(-1.0, 1.0);
         let zone = &self.zones[self.zone(z)];
         let top = 1.0 - 1.0 / self.n;
         let corner = zone.inverse * DVec2::new(p.y.atan2(p.x), z - top);
         let corner = DVec2::new(floor(corner.x), floor(corner.y));
-        let (mut best, mut best_dot) = (0, f64::NEG_INFINITY);
-        for s in 0..4 {
-            let step = corner + DVec2::new(f64::from(s % 2), f64::from(s / 2));
+        std::array::from_fn(|s| {
+            let step = corner + DVec2::new((s % 2) as f64, (s / 2) as f64);
             let height = (zone.basis * step).y + top;
             // Beyond a pole the lattice goes on on the other side.
             let height = 2.0 * height.clamp(-1.0, 1.0) - height;
-            let index =
-                ((self.n * 0.5 - height * self.n * 0.5).floor().max(0.0) as usize).min(points.len() - 1);
-            let dot = points[index].dot(p);
-            if dot > best_dot {
-                (best, best_dot) = (index as u32, dot);
-            }
-        }
-        best
+            let turn = (self.n - height * self.n) * 0.5;
+            (turn.max(0.0) as usize).min(self.n as usize - 1)
+        })
     }
 }
 

@@ -38,8 +38,11 @@ impl Mesh {
     /// from it, so each star is made on its own from a dozen candidates: seen stereographically from the sample, which
     /// so lies at infinity, its Delaunay neighbours are the convex hull of all others. `None` when the stars do not
     /// agree with each other.
-    pub(super) fn new(points: &[DVec3], inverse: &Inverse) -> Option<Self> {
-        let (starts, neighbours) = stars(points, inverse)?;
+    ///
+    /// `spiral` are the points in the order of the spiral; `turns` says for each sample where it is there, `numbers` the
+    /// reverse.
+    pub(super) fn new(spiral: &[DVec3], inverse: &Inverse, turns: &[u32], numbers: &[u32]) -> Option<Self> {
+        let (starts, neighbours) = renumbered(&stars(spiral, inverse)?, turns, numbers);
         let mut mesh = Self {
             triangles: Vec::new(),
             starts,
@@ -47,9 +50,10 @@ impl Mesh {
             areas: Vec::new(),
         };
         mesh.triangles = mesh.close()?;
-        mesh.areas = (0..points.len() as u32)
+        let point = |i: u32| spiral[turns[i as usize] as usize];
+        mesh.areas = (0..spiral.len() as u32)
             .into_par_iter()
-            .map(|i| mesh.cell_area(i, points))
+            .map(|i| mesh.cell_area(i, point))
             .collect();
         Some(mesh)
     }
@@ -96,9 +100,9 @@ impl Mesh {
     }
 
     /// Area of the Voronoi cell of `i`: a fan of spherical triangles to the circumcentres around it.
-    fn cell_area(&self, i: u32, points: &[DVec3]) -> f64 {
-        let p = points[i as usize];
-        let centre = |(a, b): (u32, u32)| (points[a as usize] - p).cross(points[b as usize] - p).normalize();
+    fn cell_area(&self, i: u32, point: impl Fn(u32) -> DVec3) -> f64 {
+        let p = point(i);
+        let centre = |(a, b): (u32, u32)| (point(a) - p).cross(point(b) - p).normalize();
         let star = self.neighbours(i);
         let mut last = centre((star[star.len() - 1], star[0]));
         // Half the solid angle of a triangle is the argument of a complex number (Van Oosterom and Strackee 1983);
@@ -112,6 +116,23 @@ impl Mesh {
         }
         2.0 * product.y.atan2(product.x)
     }
+}
+
+/// Compressed rows: where each begins, and what is in them.
+type Rows = (Vec<u32>, Vec<u32>);
+
+/// Rows in the order of the spiral → rows in the order of the samples.
+fn renumbered((starts, neighbours): &Rows, turns: &[u32], numbers: &[u32]) -> Rows {
+    let mut own_starts = Vec::with_capacity(starts.len());
+    let mut own = Vec::with_capacity(neighbours.len());
+    own_starts.push(0);
+    for &turn in turns {
+        let turn = turn as usize;
+        let star = &neighbours[starts[turn] as usize..starts[turn + 1] as usize];
+        own.extend(star.iter().map(|&n| numbers[n as usize]));
+        own_starts.push(own.len() as u32);
+    }
+    (own_starts, own)
 }
 
 /// Each neighbour in a star with the one that follows it.
@@ -128,7 +149,7 @@ fn chunks(samples: usize) -> impl IndexedParallelIterator<Item = Range<usize>> {
 }
 
 /// Neighbours of each sample in order around it, in compressed rows.
-fn stars(points: &[DVec3], inverse: &Inverse) -> Option<(Vec<u32>, Vec<u32>)> {
+fn stars(points: &[DVec3], inverse: &Inverse) -> Option<Rows> {
     let parts: Vec<Option<(Vec<u8>, Vec<u32>)>> = chunks(points.len())
         .map(|range| {
             let mut degrees = Vec::with_capacity(range.len());
