@@ -233,13 +233,12 @@ fn surge(plate: &mut Plate, suture: &Suture, area_km2: f64, speed: f64, centre: 
         .collect();
     let nearest = Nearest::new(lattice, &sources, reach / RADIUS_KM, |_, i| plate.contains(i));
     let centre = back * centre;
-    let members = plate.members().to_vec();
-    for (slot, i) in members.into_iter().enumerate() {
+    let (members, crust) = plate.members_and_crust();
+    for (&i, crust) in members.iter().zip(crust) {
         let p = lattice.point(i);
         let Some((_, arc)) = nearest.of(i, p, &sources) else {
             continue;
         };
-        let crust = &mut plate.crust[slot];
         if !crust.continental {
             continue;
         }

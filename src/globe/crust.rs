@@ -83,7 +83,7 @@ impl Crust {
 }
 
 /// A bit for each sample of the lattice.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Marks(Vec<u64>);
 
 impl Marks {
@@ -124,7 +124,7 @@ impl Marks {
 ///
 /// A bit per sample of the lattice and a count per word: membership and slot take constant time, and forty plates of
 /// half a million samples take four megabytes.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SampleSet {
     marks: Marks,
     /// Members before each word.

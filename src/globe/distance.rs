@@ -40,6 +40,18 @@ impl Nearest {
         limit: f64,
         passes: impl Fn(u32, u32) -> bool,
     ) -> Self {
+        let all: Vec<u32> = (0..sources.len() as u32).collect();
+        Self::of_some(lattice, sources, &all, limit, passes)
+    }
+
+    /// As [`Self::new`], of only some of the sources.
+    pub(super) fn of_some(
+        lattice: &Lattice,
+        sources: &[(u32, DVec3)],
+        some: &[u32],
+        limit: f64,
+        passes: impl Fn(u32, u32) -> bool,
+    ) -> Self {
         let least = limit.min(std::f64::consts::PI).cos();
         let mut source = Numbers::new(lattice);
         // Cosine of the distance of a sample from the source that it has now.
@@ -49,12 +61,13 @@ impl Nearest {
             })
         };
         let mut front = Vec::new();
-        for (number, &(sample, at)) in sources.iter().enumerate() {
+        for &number in some {
+            let (sample, at) = sources[number as usize];
             if lattice.point(sample).dot(at) > cosine(&source, sample) {
                 if source.get(sample).is_none() {
                     front.push(sample);
                 }
-                source.set(sample, number as u32);
+                source.set(sample, number);
             }
         }
         let mut next = Vec::new();

@@ -12,6 +12,9 @@ use super::plate::Plate;
 use crate::sphere::{Lattice, RADIUS_KM};
 use crate::surface::planet::{Grip, Orogeny};
 
+/// Into so many parts the plates are divided to find what is near their fronts.
+const FLOODS: usize = 4;
+
 /// A place on the upper plate from which a front is felt.
 #[derive(Clone, Copy, Debug)]
 struct Front {
@@ -30,7 +33,8 @@ struct Front {
 pub(super) struct Fronts {
     felt: Vec<Front>,
     sources: Vec<(u32, DVec3)>,
-    nearest: Nearest,
+    /// For the plates (index) of each remainder by [`FLOODS`].
+    nearest: Vec<Nearest>,
     /// For each sample of the world how deep a trench is there, 0–1.
     trench: Vec<f32>,
     /// For each plate: where it plunges, weighted with the length of the front, and its share of the border.
@@ -132,9 +136,16 @@ impl Fronts {
             fronts = smoothed(&fronts, &sources, &at, lattice);
         }
         let reach = params.subduction_km.max(params.arc_km) / RADIUS_KM;
-        let nearest = Nearest::new(lattice, &sources, reach, |source, cell| {
-            cover.owner[cell as usize] == fronts[source as usize].upper
+        // What is felt on one plate is no matter to the others.
+        let nearest = (0..FLOODS as u16).into_par_iter().map(|flood| {
+            let mine: Vec<u32> = (0..fronts.len() as u32)
+                .filter(|&source| fronts[source as usize].upper % FLOODS as u16 == flood)
+                .collect();
+            Nearest::of_some(lattice, &sources, &mine, reach, |source, cell| {
+                cover.owner[cell as usize] == fronts[source as usize].upper
+            })
         });
+        let nearest = nearest.collect();
         Self {
             felt: fronts,
             sources,
@@ -149,17 +160,18 @@ impl Fronts {
         self.trench[cell as usize]
     }
 
-    /// Raises crust of the plate on top at a sample of the world. `p` is where the crust is, `noise` −1 to 1, `turn` leads
+    /// Raises crust of the plate on top, `upper`, at a sample of the world. `p` is where the crust is, `noise` −1 to 1, `turn` leads
     /// from the world's frame to the plate's. True where it rose.
     pub(super) fn raise(
         &self,
         crust: &mut Crust,
-        (cell, p): (u32, DVec3),
+        (upper, cell, p): (u16, u32, DVec3),
         noise: f32,
         turn: DQuat,
         params: &GlobeParams,
     ) -> bool {
-        let Some((source, arc)) = self.nearest.of(cell, p, &self.sources) else {
+        let nearest = &self.nearest[usize::from(upper) % FLOODS];
+        let Some((source, arc)) = nearest.of(cell, p, &self.sources) else {
             return false;
         };
         let front = &self.felt[source as usize];

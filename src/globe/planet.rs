@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::borders::{Meeting, Polarities, SEGMENTS, Strip, meetings};
 use super::collide::{self, collide};
 use super::cover::{Contest, Cover};
+use super::crust::{CONTINENTAL_KM, Crust, ROOT};
 use super::distance::Numbers;
 use super::fronts::Fronts;
 use super::noise::Noise;
@@ -80,9 +81,9 @@ pub struct StepReport {
 #[derive(Clone, Debug)]
 pub struct Planet {
     pub(super) lattice: Arc<Lattice>,
-    coarse: Arc<Lattice>,
+    pub(super) coarse: Arc<Lattice>,
     pub(super) params: GlobeParams,
-    noise: Arc<Vec<f32>>,
+    pub(super) noise: Arc<Vec<f32>>,
     pub(super) plates: Vec<Plate>,
     pub(super) polarities: Polarities,
     pub(super) hot_spots: Vec<DVec3>,
@@ -281,12 +282,11 @@ impl Planet {
             .enumerate()
             .map(|(index, plate)| {
                 let (rotation, back) = (plate.rotation, plate.rotation.inverse());
-                let members = plate.members().to_vec();
                 let margins = tidy::margins(plate, lattice, params);
-                plate
-                    .crust
+                let (members, crust) = plate.members_and_crust();
+                crust
                     .par_iter_mut()
-                    .zip(&members)
+                    .zip(members)
                     .zip(&cover.cells[index])
                     .zip(&margins)
                     .with_min_len(2048)
@@ -294,7 +294,13 @@ impl Planet {
                         let mut rose = false;
                         if cover.owner[cell as usize] == index as u16 {
                             let at = rotation * lattice.point(i);
-                            rose = fronts.raise(crust, (cell, at), noise[i as usize], back, params);
+                            rose = fronts.raise(
+                                crust,
+                                (index as u16, cell, at),
+                                noise[i as usize],
+                                back,
+                                params,
+                            );
                             if spots.contains(&(cell, index as u16)) {
                                 tidy::erupt(crust, params);
                             }
@@ -308,10 +314,10 @@ impl Planet {
                             !(crust.z.is_finite() && crust.thickness.is_finite() && crust.fold.is_finite());
                         let emerges = !crust.continental && f64::from(crust.z) > params.emergence_km;
                         if lost {
-                            *crust = super::crust::Crust::oceanic(params.abyss_km as f32, 0.0);
+                            *crust = Crust::oceanic(params.abyss_km as f32, 0.0);
                         } else if emerges {
                             crust.continental = true;
-                            crust.thickness = super::crust::CONTINENTAL_KM + super::crust::ROOT * crust.z;
+                            crust.thickness = CONTINENTAL_KM + ROOT * crust.z;
                             crust.age = 0.0;
                         }
                         [saturated, lost, emerges].map(u64::from)
@@ -414,7 +420,7 @@ impl Planet {
         }
     }
 
-    fn tear(&mut self, index: usize, cut: &Cut) -> Result<Vec<u32>, RiftError> {
+    pub(super) fn tear(&mut self, index: usize, cut: &Cut) -> Result<Vec<u32>, RiftError> {
         let parts = rift::parts(&self.plates[index], cut, &self.lattice, &mut self.rng)?;
         let next_id = &mut self.next_id;
         let new_id = || {
@@ -430,124 +436,6 @@ impl Planet {
         self.plates.extend(torn);
         self.totals.rifts += 1;
         Ok(ids)
-    }
-
-    fn index_of(&self, id: u32) -> Option<usize> {
-        self.plates.iter().position(|plate| plate.id == id)
-    }
-
-    /// Names of the plates.
-    pub fn plate_ids(&self) -> impl Iterator<Item = u32> {
-        self.plates.iter().map(|plate| plate.id)
-    }
-
-    /// The plate on top at a direction, by its name.
-    pub fn plate_at(&self, p: DVec3) -> u32 {
-        let mut best: Option<(u16, u32)> = None;
-        let cell = self.lattice.nearest(p);
-        for (index, plate) in self.plates.iter().enumerate() {
-            let Some(slot) = plate.slot_at(p, &self.lattice) else {
-                continue;
-            };
-            let next = (index as u16, slot);
-            let wins = best.is_none_or(|best| {
-                let at = self.lattice.point(cell);
-                self.polarities
-                    .first_is_upper(&self.plates, [next, best], at, &self.coarse)
-            });
-            if wins {
-                best = Some(next);
-            }
-        }
-        // In a gap the plate whose crust is nearest.
-        let index = best.map_or_else(|| self.nearest_plate(p), |(index, _)| index as usize);
-        self.plates[index].id
-    }
-
-    fn nearest_plate(&self, p: DVec3) -> usize {
-        let distance = |plate: &Plate| {
-            let local = plate.rotation.inverse() * p;
-            let points = plate.members().iter().map(|&i| self.lattice.point(i).dot(local));
-            points.fold(f64::NEG_INFINITY, f64::max)
-        };
-        let mut best = (0, f64::NEG_INFINITY);
-        for (index, plate) in self.plates.iter().enumerate() {
-            let near = distance(plate);
-            if near > best.1 {
-                best = (index, near);
-            }
-        }
-        best.0
-    }
-
-    /// Leads a plate: from now on it turns with `omega`, rad/My, until it is let go. True where that was faster than plates
-    /// move and was held to [`GlobeParams::max_speed`]. A plate that there is not is no matter.
-    pub fn lead(&mut self, id: u32, omega: DVec3) -> bool {
-        let fastest = self.params.max_speed / RADIUS_KM;
-        let Some(index) = self.index_of(id) else {
-            return false;
-        };
-        if !omega.is_finite() {
-            self.totals.quarantined += 1;
-            return false;
-        }
-        let plate = &mut self.plates[index];
-        plate.grip = Grip::Led;
-        plate.omega = omega.clamp_length_max(fastest);
-        let clamped = omega.length() > fastest * (1.0 + 1e-9);
-        self.totals.clamped += u64::from(clamped);
-        clamped
-    }
-
-    /// Holds a plate where it is until it is let go.
-    pub fn anchor(&mut self, id: u32) {
-        if let Some(index) = self.index_of(id) {
-            self.plates[index].grip = Grip::Anchored;
-            self.plates[index].omega = DVec3::ZERO;
-        }
-    }
-
-    /// Lets a plate go: it keeps its motion, and slabs and chance work on it again.
-    pub fn release(&mut self, id: u32) {
-        if let Some(index) = self.index_of(id) {
-            self.plates[index].grip = Grip::Free;
-        }
-    }
-
-    /// Tears a plate. The parts' names come back; the first keeps the plate's.
-    ///
-    /// # Errors
-    /// When there is no such plate, or the parts would be too small: see [`RiftError`].
-    pub fn rift(&mut self, id: u32, cut: &Cut) -> Result<Vec<u32>, RiftError> {
-        let index = self.index_of(id).ok_or(RiftError::NoPlate(id))?;
-        self.tear(index, cut)
-    }
-
-    /// Makes crust within `radius` (radians) of a direction continental or oceanic.
-    pub fn paint(&mut self, at: DVec3, radius: f64, continental: bool) {
-        let reach = radius.clamp(0.0, std::f64::consts::PI).cos();
-        let (lattice, noise) = (&self.lattice, &self.noise);
-        self.plates.par_iter_mut().for_each(|plate| {
-            let back = plate.rotation.inverse() * at;
-            let members = plate.members().to_vec();
-            for (slot, i) in members.into_iter().enumerate() {
-                let crust = &mut plate.crust[slot];
-                if lattice.point(i).dot(back) < reach || crust.continental == continental {
-                    continue;
-                }
-                *crust = if continental {
-                    super::crust::Crust::continental(0.3 + 0.15 * noise[i as usize])
-                } else {
-                    super::crust::Crust::oceanic(-super::params::gdh1_km(40.0) as f32, 40.0)
-                };
-            }
-        });
-    }
-
-    /// Tells a plate's rotation, angular velocity and area (km²), for those who measure.
-    pub fn plate_state(&self, id: u32) -> Option<(glam::DQuat, DVec3, f64)> {
-        let plate = &self.plates[self.index_of(id)?];
-        Some((plate.rotation, plate.omega, plate.area_km2(&self.lattice)))
     }
 }
 

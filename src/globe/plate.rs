@@ -1,5 +1,7 @@
 //! A plate: a set of samples in a frame that turns, and the crust on them.
 
+use std::sync::Arc;
+
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
@@ -22,11 +24,12 @@ pub(super) struct Plate {
     pub(super) omega: DVec3,
     /// What a hand does with it.
     pub(super) grip: Grip,
-    set: SampleSet,
+    // What a snapshot shares with its planet until one of them changes it.
+    set: Arc<SampleSet>,
     /// Its samples, ascending.
-    members: Vec<u32>,
+    members: Arc<Vec<u32>>,
     /// Their crust.
-    pub(super) crust: Vec<Crust>,
+    pub(super) crust: Arc<Vec<Crust>>,
     /// A cap in its frame that holds it: centre and the cosine of the radius.
     cap: (DVec3, f64),
 }
@@ -45,9 +48,9 @@ impl Plate {
             rotation,
             omega: DVec3::ZERO,
             grip: Grip::Free,
-            set: SampleSet::new(lattice.len(), &[]),
-            members: Vec::new(),
-            crust: Vec::new(),
+            set: Arc::default(),
+            members: Arc::default(),
+            crust: Arc::default(),
             cap: (DVec3::Z, -1.0),
         };
         plate.replace(members, crust, lattice);
@@ -59,7 +62,7 @@ impl Plate {
             members.is_sorted() && members.len() == crust.len(),
             "members ascend"
         );
-        self.set = SampleSet::new(lattice.len(), &members);
+        self.set = Arc::new(SampleSet::new(lattice.len(), &members));
         let sum: DVec3 = members.iter().map(|&i| lattice.point(i)).sum();
         let centre = sum.try_normalize().unwrap_or(DVec3::Z);
         let least = members
@@ -69,13 +72,19 @@ impl Plate {
         // A cell reaches beyond its sample.
         let radius = least.clamp(-1.0, 1.0).acos() + 1.5 * lattice.spacing();
         self.cap = (centre, radius.min(std::f64::consts::PI).cos());
-        self.members = members;
-        self.crust = crust;
+        self.members = Arc::new(members);
+        self.crust = Arc::new(crust);
     }
 
     /// Its samples, ascending.
     pub(super) fn members(&self) -> &[u32] {
         &self.members
+    }
+
+    /// Its samples, and their crust to be changed.
+    pub(super) fn members_and_crust(&mut self) -> (&[u32], &mut [Crust]) {
+        let crust: &mut Vec<Crust> = Arc::make_mut(&mut self.crust);
+        (&self.members, crust)
     }
 
     /// Number of samples.
@@ -211,7 +220,7 @@ impl Plate {
 
     /// The samples of the slots that `belongs` names.
     pub(super) fn samples_where(&self, belongs: impl Fn(u32) -> bool) -> impl Iterator<Item = u32> {
-        let slots = (0..).zip(&self.members);
+        let slots = (0..).zip(self.members.iter());
         slots.filter(move |&(slot, _)| belongs(slot)).map(|(_, &i)| i)
     }
 

@@ -129,11 +129,11 @@ pub(super) fn fill_basins(plates: &mut [Plate], lattice: &Lattice, params: &Glob
                 open[number as usize] = lattice.neighbours(i).iter().any(|&n| !plate.contains(n));
             }
         }
-        for (slot, &number) in region.iter().enumerate() {
+        let (_, crust) = plate.members_and_crust();
+        for (&number, crust) in region.iter().zip(crust) {
             if number == u32::MAX || open[number as usize] {
                 continue;
             }
-            let crust = &mut plate.crust[slot];
             crust.z += (BASIN_FILL * my) as f32;
             crust.trench = 0.0;
             if crust.z >= BASIN_FULL_KM {
