@@ -1,63 +1,21 @@
 //! The session as a whole: answers, undo, roll-back, quarantine, determinism.
 
+mod sim_common;
+
 use std::sync::Arc;
 
 use glam::DVec2;
 use orogen::gesture::command::{Action, Arrow, Command};
-use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::gesture::contact::{InputFrame, Phase, Side};
 use orogen::sim::{Sim, SimParams, TICK_US, World};
 use orogen::terrain::Tin;
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
-const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+use sim_common::{SIZE_MM, event, frame, palm, stroke};
 
 fn sim(nodes: usize) -> Sim {
     let world = World::new(PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE), nodes, 7).expect("a world");
     Sim::new(world, SimParams::default())
-}
-
-fn event(phase: Phase, id: u64, position: DVec2) -> ContactEvent {
-    let key = ContactKey {
-        source: Source::File,
-        device: 0,
-        id,
-        generation: 0,
-    };
-    ContactEvent {
-        phase,
-        contact: Contact {
-            key,
-            position,
-            size_mm: None,
-            confidence: None,
-        },
-    }
-}
-
-fn palm(phase: Phase, id: u64, position: DVec2) -> ContactEvent {
-    let mut event = event(phase, id, position);
-    event.contact.confidence = Some(0.0);
-    event
-}
-
-fn frame(t_ms: u64, events: Vec<ContactEvent>) -> InputFrame {
-    InputFrame {
-        t_us: t_ms * 1000,
-        events,
-        commands: Vec::new(),
-    }
-}
-
-/// One finger that moves from `from` by `by` within `ms` from `start_ms` on.
-fn drag(id: u64, from: DVec2, by: DVec2, start_ms: u64, ms: u64) -> Vec<InputFrame> {
-    let mut frames = vec![frame(start_ms, vec![event(Phase::Down, id, from)])];
-    let steps = ms / 16;
-    for step in 1..=steps {
-        let at = from + by * (step as f64 / steps as f64);
-        frames.push(frame(start_ms + step * 16, vec![event(Phase::Move, id, at)]));
-    }
-    frames.push(frame(start_ms + ms + 16, vec![event(Phase::Up, id, from + by)]));
-    frames
 }
 
 fn play(sim: &mut Sim, frames: Vec<InputFrame>, until_ms: u64) {
@@ -83,7 +41,7 @@ fn land_answers_while_the_finger_moves() {
     let (mut touched, mut untouched) = (sim(3000), sim(3000));
     play(
         &mut touched,
-        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 100, 800),
+        stroke(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 100, 800),
         900,
     );
     play(&mut untouched, Vec::new(), 900);
@@ -103,13 +61,13 @@ fn undo_restores_land_and_time_of_the_last_push_of_that_side() {
     // A push in the southern half, then one in the northern half.
     play(
         &mut sim,
-        drag(1, DVec2::new(300.0, 550.0), DVec2::new(60.0, 0.0), 520, 400),
+        stroke(1, DVec2::new(300.0, 550.0), DVec2::new(60.0, 0.0), 520, 400),
         2000,
     );
     let between = sim.world().clone();
     play(
         &mut sim,
-        drag(2, DVec2::new(800.0, 120.0), DVec2::new(60.0, 0.0), 2020, 400),
+        stroke(2, DVec2::new(800.0, 120.0), DVec2::new(60.0, 0.0), 2020, 400),
         3000,
     );
     assert!(sim.undo(Some(Side::North)));
@@ -160,10 +118,10 @@ fn a_contact_that_turns_out_to_be_a_sleeve_leaves_no_trace() {
 fn a_short_stroke_does_not_undo_a_grand_push() {
     let (mut alone, mut disturbed) = (sim(3000), sim(3000));
     let (from, by) = (DVec2::new(500.0, 340.0), DVec2::new(120.0, 0.0));
-    let push = drag(1, from, by, 0, 600);
+    let push = stroke(1, from, by, 0, 600);
     let mut both = push.clone();
     // A second later somebody's finger slips back over the place where the plate now stands.
-    both.extend(drag(2, from + by, DVec2::new(-8.0, 3.0), 1600, 160));
+    both.extend(stroke(2, from + by, DVec2::new(-8.0, 3.0), 1600, 160));
     play(&mut alone, push, 6000);
     play(&mut disturbed, both, 6000);
     assert_eq!(disturbed.contact_stats().pushes, 2);
@@ -177,7 +135,7 @@ fn a_short_stroke_does_not_undo_a_grand_push() {
 fn commands_edit_standing_plates() {
     let mut sim = sim(1000);
     let at = DVec2::new(600.0, 340.0);
-    play(&mut sim, drag(1, at, DVec2::new(80.0, 0.0), 0, 400), 1000);
+    play(&mut sim, stroke(1, at, DVec2::new(80.0, 0.0), 0, 400), 1000);
     let command = |t_us: u64, action: Action| InputFrame {
         t_us,
         events: Vec::new(),
@@ -215,7 +173,7 @@ fn commands_edit_standing_plates() {
 fn an_edit_is_undone_as_one_and_gives_the_plate_back() {
     let mut sim = sim(1000);
     let at = DVec2::new(600.0, 340.0);
-    play(&mut sim, drag(1, at, DVec2::new(80.0, 0.0), 0, 400), 1000);
+    play(&mut sim, stroke(1, at, DVec2::new(80.0, 0.0), 0, 400), 1000);
     let command = |t_us: u64, action: Action| InputFrame {
         t_us,
         events: Vec::new(),
@@ -264,7 +222,7 @@ fn a_world_moves_to_other_nodes() {
     let mut sim = sim(2000);
     play(
         &mut sim,
-        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
+        stroke(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
         3000,
     );
     let world = sim.world();
@@ -328,7 +286,7 @@ fn numbers_that_are_none_never_reach_the_land() {
     let mut sim = Sim::new(world, params);
     play(
         &mut sim,
-        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
+        stroke(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
         1000,
     );
     assert!(sim.quarantine().steps > 0, "the broken steps are counted");
@@ -344,8 +302,8 @@ fn the_same_session_gives_the_same_bits_for_any_number_of_threads() {
             .expect("a pool");
         pool.install(|| {
             let mut sim = sim(5000);
-            let mut frames = drag(1, DVec2::new(300.0, 340.0), DVec2::new(90.0, 20.0), 0, 500);
-            frames.extend(drag(
+            let mut frames = stroke(1, DVec2::new(300.0, 340.0), DVec2::new(90.0, 20.0), 0, 500);
+            frames.extend(stroke(
                 2,
                 DVec2::new(800.0, 300.0),
                 DVec2::new(-90.0, 0.0),
@@ -366,7 +324,7 @@ fn a_world_rests_five_million_years_after_its_last_push() {
     let mut sim = sim(300);
     play(
         &mut sim,
-        drag(1, DVec2::new(600.0, 340.0), DVec2::new(60.0, 0.0), 0, 400),
+        stroke(1, DVec2::new(600.0, 340.0), DVec2::new(60.0, 0.0), 0, 400),
         600,
     );
     assert!(!sim.at_rest());
@@ -390,7 +348,7 @@ fn a_stopped_clock_does_not_run_on() {
         let mut sim = sim(300);
         play(
             &mut sim,
-            drag(1, DVec2::new(600.0, 340.0), DVec2::new(60.0, 0.0), 0, 400),
+            stroke(1, DVec2::new(600.0, 340.0), DVec2::new(60.0, 0.0), 0, 400),
             600,
         );
         let commands = vec![Command::new(stop)];
@@ -414,7 +372,7 @@ fn the_shown_land_rises_between_two_steps_and_meets_the_next_one() {
     let mut sim = sim(3000);
     play(
         &mut sim,
-        drag(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
+        stroke(1, DVec2::new(600.0, 340.0), DVec2::new(80.0, 0.0), 0, 400),
         6000,
     );
     // The heights at the moment, with what erosion takes between two steps and without.

@@ -1,17 +1,20 @@
 //! The session on the globe: hands lead, hold and tear plates, and turn the view; undo, roll-back, determinism.
 
+mod sim_common;
+
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use orogen::gesture::command::{Action, Command, Paint, Place, Tool};
-use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::gesture::command::{Action, Paint, Place, Tool};
+use orogen::gesture::contact::{InputFrame, Phase, Side};
 use orogen::globe::Start;
 use orogen::sim::TICK_US;
 use orogen::sim::globe::{GlobeSim, GlobeSimParams, Grasp};
 use orogen::sphere::{Lattice, RADIUS_KM, arc};
 use orogen::surface::planet::{Grip, Planet};
 
-const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+use sim_common::{SIZE_MM, command, drag, event, frame, lift, stroke};
+
 const MIDDLE: DVec2 = DVec2::new(604.8, 340.2);
 
 /// A small planet of few, large plates.
@@ -23,59 +26,6 @@ fn sim() -> GlobeSim {
         seed: 5,
     };
     GlobeSim::new(lattice, start, SIZE_MM, GlobeSimParams::default()).expect("a planet")
-}
-
-fn event(phase: Phase, id: u64, position: DVec2) -> ContactEvent {
-    let key = ContactKey {
-        source: Source::File,
-        device: 0,
-        id,
-        generation: 0,
-    };
-    ContactEvent {
-        phase,
-        contact: Contact {
-            key,
-            position,
-            size_mm: None,
-            confidence: None,
-        },
-    }
-}
-
-fn frame(t_ms: u64, events: Vec<ContactEvent>) -> InputFrame {
-    InputFrame {
-        t_us: t_ms * 1000,
-        events,
-        commands: Vec::new(),
-    }
-}
-
-fn command(t_ms: u64, action: Action) -> InputFrame {
-    InputFrame {
-        t_us: t_ms * 1000,
-        events: Vec::new(),
-        commands: vec![Command {
-            action,
-            side: Some(Side::South),
-            contact: None,
-        }],
-    }
-}
-
-/// A finger that lands, goes by `by` within `ms`, and stays down.
-fn drag(id: u64, from: DVec2, by: DVec2, start_ms: u64, ms: u64) -> Vec<InputFrame> {
-    let mut frames = vec![frame(start_ms, vec![event(Phase::Down, id, from)])];
-    let steps = ms / 16;
-    for step in 1..=steps {
-        let at = from + by * (step as f64 / steps as f64);
-        frames.push(frame(start_ms + step * 16, vec![event(Phase::Move, id, at)]));
-    }
-    frames
-}
-
-fn lift(t_ms: u64, id: u64, at: DVec2) -> InputFrame {
-    frame(t_ms, vec![event(Phase::Up, id, at)])
 }
 
 fn play(sim: &mut GlobeSim, mut frames: Vec<InputFrame>, until_ms: u64) {
@@ -409,6 +359,85 @@ fn cuts_brush_and_other_planets_are_undone_too() {
     );
     play(&mut sim, vec![command(2000, Action::Play)], 3000);
     assert!((sim.planet().time_my() + sim.pending_my() - 10.0).abs() < 0.4);
+}
+
+/// Samples that are continental, and where the brush of a finger at `mm` would find them.
+fn land_at(sim: &GlobeSim, mm: DVec2) -> bool {
+    let planet = sim.surface();
+    let at = sim.view().cast(mm).expect("on the globe");
+    planet.continental[planet.lattice.nearest(at) as usize]
+}
+
+#[test]
+fn brushes_paint_where_fingers_go_and_a_stroke_is_undone_as_one() {
+    for (paint, other) in [(Tool::Land, Tool::Sea), (Tool::Sea, Tool::Land)] {
+        let mut sim = sim();
+        // What is to be changed is made first, everywhere.
+        let first = Action::Paint {
+            at: Place { lat: 0.0, lon: 0.0 },
+            radius_deg: 90.0,
+            paint: other.paint().expect("a brush"),
+        };
+        let speed = Action::Speed(20.0);
+        let frames = vec![
+            command(
+                0,
+                Action::View {
+                    lon: 0.0,
+                    lat: 0.0,
+                    zoom: 1.0,
+                },
+            ),
+            command(0, first),
+            command(0, speed),
+            command(0, Action::Tool(paint)),
+        ];
+        // (Half a step later plates are shown ahead of where the planet has them.)
+        play(&mut sim, frames, 48);
+        let strokes = sim.counts().painted;
+        let plates = sim.planet().plate_ids().count();
+        let from = MIDDLE + DVec2::new(-120.0, 30.0);
+        let painted = [0.0, 0.3, 0.6, 1.0].map(|part| from + DVec2::new(200.0 * part, 40.0 * part));
+        let beside = MIDDLE + DVec2::new(0.0, 150.0);
+        let is_land = paint == Tool::Land;
+        assert!(painted.iter().all(|&mm| land_at(&sim, mm) != is_land));
+        play(&mut sim, stroke(1, from, DVec2::new(200.0, 40.0), 64, 64), 160);
+        assert!(
+            painted.iter().all(|&mm| land_at(&sim, mm) == is_land),
+            "{paint:?}"
+        );
+        assert_eq!(land_at(&sim, beside), !is_land);
+        assert!(sim.tethers().is_empty(), "a brush moves nothing");
+        assert_eq!(
+            (sim.counts().painted, sim.counts().led, sim.counts().taps),
+            (strokes + 1, 0, 0)
+        );
+        assert_eq!(sim.planet().plate_ids().count(), plates);
+        assert!(sim.undo(Some(Side::South)));
+        assert!(painted.iter().all(|&mm| land_at(&sim, mm) != is_land), "undone");
+    }
+}
+
+#[test]
+fn a_brush_reaches_across_a_deserted_table_and_not_into_anothers_work() {
+    let north = MIDDLE - DVec2::new(0.0, 120.0);
+    let by = DVec2::new(60.0, 0.0);
+    let mut alone = sim();
+    play(&mut alone, vec![command(0, Action::Tool(Tool::Land))], 16);
+    play(&mut alone, stroke(1, north, by, 32, 96), 200);
+    assert_eq!((alone.counts().painted, alone.counts().led), (1, 0));
+    let mut shared = sim();
+    play(&mut shared, stroke(1, north, by, 0, 96), 150);
+    assert_eq!(shared.counts().led, 1, "somebody is there");
+    play(&mut shared, vec![command(160, Action::Tool(Tool::Land))], 176);
+    play(&mut shared, stroke(2, north, by, 192, 96), 400);
+    assert_eq!((shared.counts().painted, shared.counts().led), (0, 2));
+    play(&mut shared, stroke(3, north, by, 12_000, 96), 12_200);
+    assert_eq!(
+        (shared.counts().painted, shared.counts().led),
+        (1, 2),
+        "nobody is there any more"
+    );
 }
 
 /// A session with everything in it.

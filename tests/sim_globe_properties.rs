@@ -1,46 +1,19 @@
 //! Whatever hands and commands do on the globe, the session lives, the planet stays a planet, and the same input gives the
 //! same bits.
 
+mod sim_common;
+
 use std::sync::Arc;
 
-use glam::DVec2;
 use orogen::gesture::command::{Action, Command, Paint, Place, Tool};
-use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::gesture::contact::InputFrame;
 use orogen::globe::Start;
 use orogen::sim::TICK_US;
 use orogen::sim::globe::{GlobeSim, GlobeSimParams};
 use orogen::sphere::{Lattice, RADIUS_KM};
 use proptest::prelude::*;
 
-const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
-
-fn event() -> impl Strategy<Value = ContactEvent> {
-    let phase = prop_oneof![
-        3 => Just(Phase::Down),
-        9 => Just(Phase::Move),
-        2 => Just(Phase::Up),
-        1 => Just(Phase::Cancel),
-    ];
-    let confidence = prop::option::weighted(0.1, prop_oneof![Just(0.0f32), Just(1.0f32)]);
-    let place = (-100.0..1300.0, -100.0..800.0).prop_map(|(x, y)| DVec2::new(x, y));
-    (phase, 0u64..8, place, confidence).prop_map(|(phase, id, position, confidence)| {
-        let key = ContactKey {
-            source: Source::File,
-            device: 0,
-            id,
-            generation: 0,
-        };
-        ContactEvent {
-            phase,
-            contact: Contact {
-                key,
-                position,
-                size_mm: None,
-                confidence,
-            },
-        }
-    })
-}
+use sim_common::{SIZE_MM, any_command, any_frames};
 
 fn command() -> impl Strategy<Value = Command> {
     let place = || (-90.0..=90.0, -180.0..=180.0).prop_map(|(lat, lon)| Place { lat, lon });
@@ -53,6 +26,8 @@ fn command() -> impl Strategy<Value = Command> {
         1 => Just(Action::Earth),
         1 => Just(Action::Tool(Tool::View)),
         2 => Just(Action::Tool(Tool::Push)),
+        2 => Just(Action::Tool(Tool::Land)),
+        1 => Just(Action::Tool(Tool::Sea)),
         3 => (-180.0..=180.0, -90.0..=90.0, 0.01..100.0)
             .prop_map(|(lon, lat, zoom)| Action::View { lon, lat, zoom }),
         1 => (1u32..60, 0.0..=1.0, any::<u64>())
@@ -64,31 +39,11 @@ fn command() -> impl Strategy<Value = Command> {
             paint: if land { Paint::Continent } else { Paint::Ocean },
         }),
     ];
-    (action, any::<bool>(), prop::option::of(0u64..3)).prop_map(|(action, north, contact)| Command {
-        action,
-        side: Some(if north { Side::North } else { Side::South }),
-        contact,
-    })
+    any_command(action)
 }
 
 fn frames() -> impl Strategy<Value = Vec<InputFrame>> {
-    let frame = (
-        0u64..80_000,
-        prop::collection::vec(event(), 0..6),
-        prop::collection::vec(command(), 0..2),
-    );
-    prop::collection::vec(frame, 1..60).prop_map(|frames| {
-        let mut t_us = 0;
-        let later = |(wait, events, commands)| {
-            t_us += wait;
-            InputFrame {
-                t_us,
-                events,
-                commands,
-            }
-        };
-        frames.into_iter().map(later).collect()
-    })
+    any_frames(8, command())
 }
 
 /// Plays `frames`; with `looks`, somebody looks after every tick, and the session goes on as a clone.

@@ -1,13 +1,15 @@
 //! Looking back: the history of the land, and what of it stays in reach.
 
+mod sim_common;
+
 use glam::DVec2;
-use orogen::gesture::command::{Action, Command};
-use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::gesture::command::Action;
+use orogen::gesture::contact::{ContactEvent, InputFrame, Phase, Side};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::sim::{Sim, SimParams, TICK_US, World};
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
-const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
+use sim_common::{SIZE_MM, command, event, frame, stroke};
 
 fn sim() -> Sim {
     let world = World::new(PlanMap::new(SIZE_MM, DEFAULT_SHORT_SIDE), 800, 7).expect("a world");
@@ -17,52 +19,9 @@ fn sim() -> Sim {
     Sim::new(world, params)
 }
 
-fn event(phase: Phase, id: u64, position: DVec2) -> ContactEvent {
-    ContactEvent {
-        phase,
-        contact: Contact {
-            key: ContactKey {
-                source: Source::File,
-                device: 0,
-                id,
-                generation: 0,
-            },
-            position,
-            size_mm: None,
-            confidence: None,
-        },
-    }
-}
-
-fn frame(t_ms: u64, events: Vec<ContactEvent>) -> InputFrame {
-    InputFrame {
-        t_us: t_ms * 1000,
-        events,
-        commands: Vec::new(),
-    }
-}
-
-fn order(t_ms: u64, action: Action) -> InputFrame {
-    InputFrame {
-        t_us: t_ms * 1000,
-        events: Vec::new(),
-        commands: vec![Command {
-            side: Some(Side::South),
-            ..Command::new(action)
-        }],
-    }
-}
-
-/// One finger that moves by 80 mm to the east within 400 ms.
-fn drag(id: u64, from: DVec2, start_ms: u64) -> Vec<InputFrame> {
-    let by = DVec2::new(80.0, 0.0);
-    let mut frames = vec![frame(start_ms, vec![event(Phase::Down, id, from)])];
-    for step in 1..=25 {
-        let at = from + by * (step as f64 / 25.0);
-        frames.push(frame(start_ms + step * 16, vec![event(Phase::Move, id, at)]));
-    }
-    frames.push(frame(start_ms + 416, vec![event(Phase::Up, id, from + by)]));
-    frames
+/// A push of 80 mm.
+fn push(id: u64, from: DVec2, start_ms: u64) -> Vec<InputFrame> {
+    stroke(id, from, DVec2::new(80.0, 0.0), start_ms, 400)
 }
 
 fn play(sim: &mut Sim, frames: impl IntoIterator<Item = InputFrame>, until_ms: u64) {
@@ -80,7 +39,7 @@ const EAST: DVec2 = DVec2::new(800.0, 500.0);
 #[test]
 fn scrub_brings_the_land_of_that_time_back_and_stops_the_clock() {
     let mut sim = sim();
-    play(&mut sim, drag(1, WEST, 100), 2000);
+    play(&mut sim, push(1, WEST, 100), 2000);
     while sim.world().time_yr < 1.5e6 {
         sim.tick();
     }
@@ -92,7 +51,11 @@ fn scrub_brings_the_land_of_that_time_back_and_stops_the_clock() {
     assert_eq!(first, 0.0);
     assert_eq!(last, present.time_yr);
 
-    play(&mut sim, [order(t_ms + 3016, Action::Scrub(1.56e6))], t_ms + 3500);
+    play(
+        &mut sim,
+        [command(t_ms + 3016, Action::Scrub(1.56e6))],
+        t_ms + 3500,
+    );
     assert!(sim.paused());
     assert_eq!(
         sim.world().time_yr,
@@ -102,9 +65,9 @@ fn scrub_brings_the_land_of_that_time_back_and_stops_the_clock() {
     assert_eq!(sim.world().z, then.z);
     assert_eq!(sim.world().plates, then.plates);
     assert_eq!(sim.history_yr(), (first, last), "the later ones stay in reach");
-    play(&mut sim, [order(t_ms + 3600, Action::Scrub(1e9))], t_ms + 3700);
+    play(&mut sim, [command(t_ms + 3600, Action::Scrub(1e9))], t_ms + 3700);
     assert_eq!(sim.world().z, present.z, "and so does the present");
-    play(&mut sim, [order(t_ms + 3800, Action::Scrub(0.0))], t_ms + 3900);
+    play(&mut sim, [command(t_ms + 3800, Action::Scrub(0.0))], t_ms + 3900);
     assert_eq!(sim.world().time_yr, 0.0);
     assert_eq!(sim.history_yr().1, last);
     assert_eq!(sim.counts().idle_commands, 0);
@@ -113,12 +76,12 @@ fn scrub_brings_the_land_of_that_time_back_and_stops_the_clock() {
 #[test]
 fn a_land_that_moves_on_from_the_past_is_the_land_that_it_was() {
     let mut straight = sim();
-    play(&mut straight, drag(1, WEST, 100), 4000);
+    play(&mut straight, push(1, WEST, 100), 4000);
     let mut scrubbed = sim();
-    play(&mut scrubbed, drag(1, WEST, 100), 4000);
-    play(&mut scrubbed, [order(4100, Action::Scrub(1.0e6))], 4200);
+    play(&mut scrubbed, push(1, WEST, 100), 4000);
+    play(&mut scrubbed, [command(4100, Action::Scrub(1.0e6))], 4200);
     let end_yr = scrubbed.history_yr().1;
-    play(&mut scrubbed, [order(4300, Action::Play)], 4316);
+    play(&mut scrubbed, [command(4300, Action::Play)], 4316);
     assert_eq!(scrubbed.history_yr().1, end_yr, "until the next step");
     while straight.world().time_yr < end_yr {
         straight.tick();
@@ -138,36 +101,36 @@ fn a_land_that_moves_on_from_the_past_is_the_land_that_it_was() {
 #[test]
 fn an_edit_in_the_past_drops_what_came_after() {
     let mut sim = sim();
-    play(&mut sim, drag(1, WEST, 100), 2000);
-    play(&mut sim, drag(2, EAST, 2500), 4000);
+    play(&mut sim, push(1, WEST, 100), 2000);
+    play(&mut sim, push(2, EAST, 2500), 4000);
     let early_yr = 0.6e6;
     assert!(sim.can_undo(Side::South));
-    play(&mut sim, [order(4100, Action::Scrub(early_yr))], 4200);
+    play(&mut sim, [command(4100, Action::Scrub(early_yr))], 4200);
     assert_eq!(sim.world().time_yr, early_yr);
     assert_eq!(sim.world().plates.plates().len(), 1, "the second push is to come");
     let at = WEST;
-    play(&mut sim, [order(4300, Action::Remove { at })], 4400);
+    play(&mut sim, [command(4300, Action::Remove { at })], 4400);
     assert!(sim.world().plates.plates().is_empty());
     assert_eq!(sim.history_yr().1, early_yr, "another future begins");
     // The edit is undone first.
-    play(&mut sim, [order(4430, Action::Undo)], 4460);
+    play(&mut sim, [command(4430, Action::Undo)], 4460);
     assert_eq!(sim.world().plates.plates().len(), 1);
     // The second push never was; the first is still there to be undone.
-    play(&mut sim, [order(4500, Action::Undo)], 4600);
+    play(&mut sim, [command(4500, Action::Undo)], 4600);
     assert!(sim.world().time_yr < early_yr);
     assert!(!sim.can_undo(Side::South));
     // What was edited is the present: looking back and forth keeps it.
-    play(&mut sim, [order(4700, Action::Scrub(1e9))], 4800);
+    play(&mut sim, [command(4700, Action::Scrub(1e9))], 4800);
     assert!(sim.world().plates.plates().is_empty());
 }
 
 #[test]
 fn undo_in_the_past_takes_back_what_was_before_it() {
     let mut sim = sim();
-    play(&mut sim, drag(1, WEST, 100), 2000);
-    play(&mut sim, drag(2, EAST, 2500), 4000);
-    play(&mut sim, [order(4100, Action::Scrub(0.6e6))], 4200);
-    play(&mut sim, [order(4300, Action::Undo)], 4400);
+    play(&mut sim, push(1, WEST, 100), 2000);
+    play(&mut sim, push(2, EAST, 2500), 4000);
+    play(&mut sim, [command(4100, Action::Scrub(0.6e6))], 4200);
+    play(&mut sim, [command(4300, Action::Undo)], 4400);
     assert!(sim.world().plates.plates().is_empty(), "the first push is undone");
     assert!(sim.world().time_yr < 0.6e6);
     assert!(
@@ -179,16 +142,16 @@ fn undo_in_the_past_takes_back_what_was_before_it() {
 #[test]
 fn undo_after_a_look_back_in_a_land_that_was_started_over() {
     let mut sim = sim();
-    play(&mut sim, drag(1, WEST, 100), 3000);
-    play(&mut sim, [order(3016, Action::StartOver)], 3100);
-    play(&mut sim, drag(2, EAST, 3200), 5000);
-    play(&mut sim, [order(5016, Action::Scrub(0.1e6))], 5100);
+    play(&mut sim, push(1, WEST, 100), 3000);
+    play(&mut sim, [command(3016, Action::StartOver)], 3100);
+    play(&mut sim, push(2, EAST, 3200), 5000);
+    play(&mut sim, [command(5016, Action::Scrub(0.1e6))], 5100);
     // Older land is later in the list than the time that is looked back to; what is undone is what this land knows.
-    play(&mut sim, [order(5200, Action::Undo)], 5300);
+    play(&mut sim, [command(5200, Action::Undo)], 5300);
     assert!(sim.world().z.iter().all(|z| z.is_finite()));
     play(
         &mut sim,
-        [order(5400, Action::Undo), order(5416, Action::Undo)],
+        [command(5400, Action::Undo), command(5416, Action::Undo)],
         5500,
     );
     assert!(!sim.can_undo(Side::South));
@@ -197,19 +160,19 @@ fn undo_after_a_look_back_in_a_land_that_was_started_over() {
 #[test]
 fn start_over_begins_a_history_of_its_own() {
     let mut sim = sim();
-    play(&mut sim, drag(1, WEST, 100), 3000);
-    play(&mut sim, [order(3016, Action::Pause)], 3100);
+    play(&mut sim, push(1, WEST, 100), 3000);
+    play(&mut sim, [command(3016, Action::Pause)], 3100);
     let before = sim.world().clone();
     play(
         &mut sim,
-        [order(3200, Action::StartOver), order(3216, Action::Play)],
+        [command(3200, Action::StartOver), command(3216, Action::Play)],
         3250,
     );
     assert_eq!(sim.history_yr(), (0.0, 0.0));
     play(&mut sim, [], 9000);
     play(
         &mut sim,
-        [order(9016, Action::Pause), order(9032, Action::Undo)],
+        [command(9016, Action::Pause), command(9032, Action::Undo)],
         9100,
     );
     assert_eq!(sim.world().time_yr, before.time_yr);
@@ -218,7 +181,7 @@ fn start_over_begins_a_history_of_its_own() {
         before.time_yr,
         "not the past of the land between"
     );
-    play(&mut sim, [order(9116, Action::Scrub(0.0))], 9200);
+    play(&mut sim, [command(9116, Action::Scrub(0.0))], 9200);
     assert_eq!(sim.world().z, before.z);
 }
 
@@ -235,10 +198,10 @@ fn a_palm_that_is_taken_back_leaves_the_past_as_it_was() {
     frames.push(frame(2480, vec![palm(event(Phase::Up, 9, at(29)))]));
     // A teacher scrubs and lets go on while the sleeve lies there.
     let orders = [
-        order(2048, Action::Scrub(0.5e6)),
-        order(2064, Action::Play),
-        order(2160, Action::Scrub(0.3e6)),
-        order(2320, Action::Play),
+        command(2048, Action::Scrub(0.5e6)),
+        command(2064, Action::Play),
+        command(2160, Action::Scrub(0.3e6)),
+        command(2320, Action::Play),
     ];
     let (mut with, mut without) = (sim(), sim());
     let mut all = frames;
@@ -254,12 +217,12 @@ fn a_palm_that_is_taken_back_leaves_the_past_as_it_was() {
 
 #[test]
 fn scrubbing_replays_from_a_gesture_file() {
-    let mut frames = drag(1, WEST, 100);
-    frames.push(order(2000, Action::Scrub(0.4e6)));
-    frames.extend(drag(2, EAST, 2200));
-    frames.push(order(2700, Action::Play));
-    frames.push(order(4000, Action::Scrub(0.7e6)));
-    frames.push(order(4500, Action::Play));
+    let mut frames = push(1, WEST, 100);
+    frames.push(command(2000, Action::Scrub(0.4e6)));
+    frames.extend(push(2, EAST, 2200));
+    frames.push(command(2700, Action::Play));
+    frames.push(command(4000, Action::Scrub(0.7e6)));
+    frames.push(command(4500, Action::Play));
     let file = GestureFile {
         header: Header::new(SIZE_MM),
         frames: frames.clone(),
@@ -283,7 +246,7 @@ fn a_plate_of_the_past_is_not_held_by_a_hand_that_has_left() {
     play(&mut sim, [frame(1916, vec![event(Phase::Up, 1, WEST)])], 3000);
     play(
         &mut sim,
-        [order(3016, Action::Scrub(0.6e6)), order(3032, Action::Play)],
+        [command(3016, Action::Scrub(0.6e6)), command(3032, Action::Play)],
         3100,
     );
     let held = |sim: &Sim| sim.world().plates.plates().iter().any(|plate| plate.held);

@@ -1,46 +1,14 @@
 //! Whatever hands and commands do, the session lives, the land stays finite, and the same input gives the same bits.
 
-use glam::DVec2;
+mod sim_common;
+
 use orogen::gesture::command::{Action, Arrow, Command};
-use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
+use orogen::gesture::contact::InputFrame;
 use orogen::sim::{Quarantine, Sim, SimParams, TICK_US, World};
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 use proptest::prelude::*;
 
-const SIZE_MM: DVec2 = DVec2::new(1209.6, 680.4);
-
-fn place() -> impl Strategy<Value = DVec2> {
-    // Some places are off the table, as ghosts are.
-    (-100.0..1300.0, -100.0..800.0).prop_map(|(x, y)| DVec2::new(x, y))
-}
-
-fn event() -> impl Strategy<Value = ContactEvent> {
-    let phase = prop_oneof![
-        3 => Just(Phase::Down),
-        6 => Just(Phase::Move),
-        2 => Just(Phase::Up),
-        1 => Just(Phase::Cancel),
-    ];
-    let size = prop::option::weighted(0.2, (1.0..60.0, 1.0..60.0).prop_map(|(w, h)| DVec2::new(w, h)));
-    let confidence = prop::option::weighted(0.1, prop_oneof![Just(0.0f32), Just(1.0f32)]);
-    (phase, 0u64..12, place(), size, confidence).prop_map(|(phase, id, position, size_mm, confidence)| {
-        let key = ContactKey {
-            source: Source::File,
-            device: 0,
-            id,
-            generation: 0,
-        };
-        ContactEvent {
-            phase,
-            contact: Contact {
-                key,
-                position,
-                size_mm,
-                confidence,
-            },
-        }
-    })
-}
+use sim_common::{SIZE_MM, any_command, any_frames, place};
 
 fn command() -> impl Strategy<Value = Command> {
     let arrow = || (place(), place()).prop_map(|(from, to)| Arrow { from, to });
@@ -57,30 +25,11 @@ fn command() -> impl Strategy<Value = Command> {
         2 => (0.0..3e6).prop_map(Action::Scrub),
         1 => Just(Action::Earth),
     ];
-    (action, any::<bool>()).prop_map(|(action, north)| Command {
-        side: Some(if north { Side::North } else { Side::South }),
-        ..Command::new(action)
-    })
+    any_command(action)
 }
 
 fn frames() -> impl Strategy<Value = Vec<InputFrame>> {
-    let frame = (
-        0u64..80_000,
-        prop::collection::vec(event(), 0..6),
-        prop::collection::vec(command(), 0..2),
-    );
-    prop::collection::vec(frame, 1..60).prop_map(|frames| {
-        let mut t_us = 0;
-        let later = |(wait, events, commands)| {
-            t_us += wait;
-            InputFrame {
-                t_us,
-                events,
-                commands,
-            }
-        };
-        frames.into_iter().map(later).collect()
-    })
+    any_frames(12, command())
 }
 
 /// Plays `frames`; with `looks`, somebody looks at the land after every tick, and the session is cut and resumed.

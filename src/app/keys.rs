@@ -73,6 +73,8 @@ fn named(key: &WinitKey, control: bool) -> Option<Key> {
             ("e", false) => Some(Key::Tool(Tool::Edit)),
             ("f", false) => Some(Key::Tool(Tool::Fold)),
             ("c", false) => Some(Key::Tool(Tool::Slice)),
+            ("b", false) => Some(Key::Tool(Tool::Land)),
+            ("o", false) => Some(Key::Tool(Tool::Sea)),
             ("i", false) => Some(Key::Readouts),
             ("s", _) => Some(Key::Save),
             ("r", false) => Some(Key::StartOver),
@@ -97,6 +99,8 @@ mod tests {
         assert_eq!(letter("z", false), None);
         assert_eq!(letter("f", false), Some(Key::Tool(Tool::Fold)));
         assert_eq!(letter("c", false), Some(Key::Tool(Tool::Slice)));
+        assert_eq!(letter("b", false), Some(Key::Tool(Tool::Land)));
+        assert_eq!(letter("G", false), Some(Key::World));
         assert_eq!(letter("s", true), Some(Key::Save));
         assert_eq!(
             named(&WinitKey::Named(NamedKey::Space), false),

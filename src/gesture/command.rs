@@ -4,7 +4,7 @@
 //!
 //! | word | value | meaning |
 //! |---|---|---|
-//! | `tool` | `"push"`, `"edit"`, `"fold"`, `"slice"`, `"view"` | the side takes this tool |
+//! | `tool` | `"push"`, `"edit"`, `"fold"`, `"slice"`, `"view"`; on the globe the brushes `"land"`, `"sea"` | the side takes this tool |
 //! | `mode` | `"mountain"`, `"globe"` | turn to this world |
 //! | `play` | `true` | the geological clock goes on |
 //! | `pause` | `true` | the geological clock stops |
@@ -201,6 +201,10 @@ pub enum Tool {
     Slice,
     /// The view is moved.
     View,
+    /// Fingers paint land on the globe.
+    Land,
+    /// Fingers paint sea on the globe.
+    Sea,
 }
 
 /// Which world.
@@ -214,7 +218,24 @@ pub enum Mode {
 }
 
 impl Tool {
-    const ALL: [Self; 5] = [Self::Push, Self::Edit, Self::Fold, Self::Slice, Self::View];
+    const ALL: [Self; 7] = [
+        Self::Push,
+        Self::Edit,
+        Self::Fold,
+        Self::Slice,
+        Self::View,
+        Self::Land,
+        Self::Sea,
+    ];
+
+    /// What its fingers paint, if it is a brush.
+    pub fn paint(self) -> Option<Paint> {
+        match self {
+            Self::Land => Some(Paint::Continent),
+            Self::Sea => Some(Paint::Ocean),
+            Self::Push | Self::Edit | Self::Fold | Self::Slice | Self::View => None,
+        }
+    }
 
     /// Its name in gesture files.
     pub fn name(self) -> &'static str {
@@ -224,6 +245,8 @@ impl Tool {
             Self::Fold => "fold",
             Self::Slice => "slice",
             Self::View => "view",
+            Self::Land => "land",
+            Self::Sea => "sea",
         }
     }
 

@@ -57,6 +57,8 @@ const GROUPS: [&[ControlKind]; 3] = [
         ControlKind::Tool(Tool::Edit),
         ControlKind::Tool(Tool::Fold),
         ControlKind::Tool(Tool::Slice),
+        ControlKind::Tool(Tool::Land),
+        ControlKind::Tool(Tool::Sea),
         ControlKind::Undo,
     ],
     &[ControlKind::PlayPause, ControlKind::Speed],
@@ -241,9 +243,12 @@ mod tests {
     fn controls_are_large_apart_within_reach_and_on_the_table() {
         for (width, height) in TABLES {
             let size_mm = DVec2::new(width, height);
-            for unattended in [false, true] {
-                let Layout { placed, papers } =
-                    layout(size_mm, |kind| !(unattended && kind == ControlKind::Save));
+            for (unattended, globe) in [(false, false), (true, false), (false, true)] {
+                let Layout { placed, papers } = layout(size_mm, |kind| match kind {
+                    ControlKind::Tool(tool) => tool.paint().is_some() == globe,
+                    ControlKind::Save => !unattended && !globe,
+                    _ => true,
+                });
                 for paper in papers {
                     let corner = paper.centre_mm - paper.half_size_mm;
                     assert!(corner.min_element() >= 0.0, "{size_mm}");

@@ -141,7 +141,7 @@ impl Instrument {
             Tool::Edit | Tool::Fold => true,
             // The ends of one that is there have handles.
             Tool::Slice => self.cuts[side as usize].is_none(),
-            Tool::Push | Tool::View => false,
+            Tool::Push | Tool::View | Tool::Land | Tool::Sea => false,
         };
         works && deserted && !self.contacts.values().any(is_down)
     }

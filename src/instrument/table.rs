@@ -38,7 +38,7 @@ pub struct InstrumentParams {
     pub unattended: bool,
     /// The fold tool is offered.
     pub folds: bool,
-    /// The world that is shown. The globe has no tools but hands.
+    /// The world that is shown. The globe's tools are its brushes.
     pub mode: Mode,
     /// Figures are shown from the start.
     pub readouts: bool,
@@ -52,6 +52,7 @@ impl InstrumentParams {
         layout(self.size_mm, |kind| match kind {
             ControlKind::Save => flat && !self.unattended,
             ControlKind::Tool(Tool::Fold) => flat && self.folds,
+            ControlKind::Tool(Tool::Land | Tool::Sea) => !flat,
             ControlKind::Tool(_)
             | ControlKind::Scrub
             | ControlKind::FreezeSlice

@@ -66,6 +66,8 @@ pub(super) fn control(glyph: Glyph<'_>, kind: ControlKind, on: bool, value: f64)
     match kind {
         ControlKind::Tool(Tool::Fold) => folds(glyph),
         ControlKind::Tool(Tool::Slice) => slice(glyph),
+        ControlKind::Tool(Tool::Land) => brush(glyph, land),
+        ControlKind::Tool(Tool::Sea) => brush(glyph, sea),
         ControlKind::Tool(Tool::Edit | Tool::Push | Tool::View) => edit(glyph),
         ControlKind::Undo => undo(glyph),
         ControlKind::PlayPause if on => {
@@ -95,6 +97,32 @@ fn edit(glyph: Glyph<'_>) {
     glyph.line(&[(-0.85, 0.62), (0.16, -0.12)], 1.0);
     glyph.fill(&[(0.22, -0.17), (-0.2, -0.08), (0.05, 0.26)], 1.0);
     glyph.arc((0.5, -0.38), 0.36, 0.0, 2.0 * PI);
+}
+
+/// A finger's brush, and below it what it paints.
+fn brush(glyph: Glyph<'_>, paints: fn(&Glyph<'_>)) {
+    glyph.line(&[(0.86, -0.92), (0.3, -0.3)], 1.0);
+    glyph.fill(&[(0.44, -0.4), (0.2, -0.2), (-0.12, 0.14), (0.08, -0.34)], 1.0);
+    paints(&glyph);
+}
+
+/// A coast.
+fn land(glyph: &Glyph<'_>) {
+    glyph.fill(
+        &[(-0.95, 0.8), (-0.5, 0.3), (-0.2, 0.42), (0.3, 0.36), (0.95, 0.8)],
+        0.85,
+    );
+}
+
+/// Two waves.
+fn sea(glyph: &Glyph<'_>) {
+    for (y, strength) in [(0.42, 1.0), (0.78, 0.75)] {
+        let wave: Vec<(f32, f32)> = (0..=24)
+            .map(|i| i as f32 / 12.0 - 1.0)
+            .map(|x| (0.95 * x, y - 0.13 * (x * 2.0 * PI).sin()))
+            .collect();
+        glyph.line(&wave, strength);
+    }
 }
 
 /// Two beds in folds.

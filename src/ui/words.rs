@@ -53,5 +53,7 @@ fn tool_word(tool: Tool) -> &'static str {
         Tool::Fold => "folds",
         Tool::Slice => "slice",
         Tool::View => "view",
+        Tool::Land => "land",
+        Tool::Sea => "sea",
     }
 }

@@ -60,6 +60,7 @@ impl GlobeSim {
     /// Plays one `do`. What means nothing here is counted.
     pub(super) fn command(&mut self, command: &Command) {
         let side = command.side.unwrap_or(Side::South);
+        self.state.stirred[side as usize] = Some(self.state.tick);
         let done = match &command.action {
             Action::Play | Action::Pause => {
                 self.state.paused = command.action == Action::Pause;

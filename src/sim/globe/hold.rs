@@ -7,7 +7,7 @@ use glam::{DQuat, DVec2, DVec3};
 use super::super::TICK_US;
 use super::session::GlobeSim;
 use super::view::TapMark;
-use crate::gesture::command::Tool;
+use crate::gesture::command::{Paint, Tool};
 use crate::gesture::contact::Side;
 use crate::gesture::event::{HandEvent, HandId};
 use crate::gesture::hand::Doing;
@@ -26,6 +26,8 @@ pub(super) enum Duty {
     Sculpt,
     /// It moves the view.
     Turn,
+    /// It paints, for a side.
+    Paint(Paint, Side),
 }
 
 /// What a hand does with the plate below it.
@@ -84,13 +86,13 @@ impl Hold {
 }
 
 /// A hand that is down, with its fingers.
-struct Down {
-    hand: HandId,
+pub(super) struct Down {
+    pub(super) hand: HandId,
     side: Side,
     grasp: Grasp,
-    duty: Duty,
+    pub(super) duty: Duty,
     /// Table mm.
-    fingers: Vec<(StrokeId, DVec2)>,
+    pub(super) fingers: Vec<(StrokeId, DVec2)>,
 }
 
 impl GlobeSim {
@@ -101,6 +103,9 @@ impl GlobeSim {
                 continue;
             };
             let middle = fingers.iter().sum::<DVec2>() / fingers.len().max(1) as f64;
+            if self.brush_at(*side).is_some() && self.state.view.contains(middle) {
+                continue;
+            }
             match self.state.view.cast(middle) {
                 Some(at) if self.state.tools[*side as usize] != Tool::View => {
                     let plate = self.plate_shown_at(at);
@@ -133,6 +138,7 @@ impl GlobeSim {
         for hand in down.iter().filter(|hand| hand.duty == Duty::Sculpt) {
             self.hold_on(hand);
         }
+        self.paint(&down);
         self.let_go();
         self.tear();
         // While the clock stands, what is shown stands too.
@@ -150,6 +156,7 @@ impl GlobeSim {
 
     /// The hands that are down, with what they are there for.
     fn hands_down(&mut self) -> Vec<Down> {
+        let brushes = [Side::North, Side::South].map(|side| self.brush_at(side));
         let state = &mut self.state;
         let mut down = Vec::new();
         for view in state.hands.hands() {
@@ -169,14 +176,18 @@ impl GlobeSim {
             let duty = known.map_or_else(
                 || {
                     let middle = fingers.iter().map(|finger| finger.1).sum::<DVec2>() / fingers.len() as f64;
-                    if state.view.contains(middle) && state.tools[view.side as usize] != Tool::View {
-                        Duty::Sculpt
-                    } else {
-                        Duty::Turn
+                    let tool = state.tools[view.side as usize];
+                    match brushes[view.side as usize] {
+                        _ if tool == Tool::View || !state.view.contains(middle) => Duty::Turn,
+                        Some((paint, side)) => Duty::Paint(paint, side),
+                        None => Duty::Sculpt,
                     }
                 },
                 |known| known.1,
             );
+            if known.is_none() && !matches!(duty, Duty::Paint(_, side) if side != view.side) {
+                state.stirred[view.side as usize] = Some(state.tick);
+            }
             for (stroke, _) in &fingers {
                 state.duties.insert(*stroke, (view.hand, duty));
             }

@@ -10,11 +10,13 @@
 //! * A hand that lifts lets its plate go: at once if it rested, else when the plate has come to where it was led, or after
 //!   [`GlobeSimParams::carry_my`]. Then it has its own motion again.
 //! * A hand that lands beside the globe, or on a side whose tool is the view, turns the globe; two of them zoom.
+//! * On a side whose tool is a brush, fingers paint land or sea where they go.
 //! * A tap marks the place and the plate for a while ([`GlobeSim::taps`]).
 //!
 //! The planet takes steps of a fixed model time. In between, eyes are shown its plates carried on by
 //! [`GlobeSim::pending_my`] ([`GlobeSim::surface`]), and hands take hold of what eyes are shown.
 
+mod brush;
 mod commands;
 mod hold;
 mod params;

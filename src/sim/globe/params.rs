@@ -18,6 +18,11 @@ pub struct GlobeSimParams {
     pub carry_my: f64,
     /// How much farther apart two hands on one plate must go than they took hold of it before it tears, km. Default 300.
     pub tear_km: f64,
+    /// Radius of what a finger paints, table mm: the same on every zoom. Default 14.
+    pub brush_mm: f64,
+    /// A half of the globe where nobody has done anything for so long is painted by the brush of the other side, seconds of
+    /// session time. Default 10.
+    pub deserted_s: f64,
     /// How long the mark of a tap stays, seconds of session time. Default 3.
     pub tap_s: f64,
     /// Most memory that undo may keep, bytes. The oldest snapshots go first.
@@ -32,6 +37,8 @@ impl Default for GlobeSimParams {
             pace_my_per_s: 5.0,
             carry_my: 10.0,
             tear_km: 300.0,
+            brush_mm: 14.0,
+            deserted_s: 10.0,
             tap_s: 3.0,
             undo_bytes: 256 << 20,
         }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::super::TICK_US;
 use super::super::rollback::Rollback;
@@ -96,6 +96,10 @@ pub(super) struct State {
     pub(super) turning: Turning,
     pub(super) taps: Vec<TapMark>,
     pub(super) undo: Vec<Arc<Snapshot>>,
+    /// Where fingers that paint were last.
+    pub(super) brushes: BTreeMap<StrokeId, DVec3>,
+    /// The tick in which each side last did something of its own.
+    pub(super) stirred: [Option<u64>; 2],
     /// The contact whose strokes of the brush the newest snapshot was taken for.
     pub(super) painted_by: Option<u64>,
     pub(super) counts: GlobeCounts,
@@ -142,6 +146,8 @@ impl GlobeSim {
             turning: Turning::default(),
             taps: Vec::new(),
             undo: Vec::new(),
+            brushes: BTreeMap::new(),
+            stirred: [None; 2],
             painted_by: None,
             counts: GlobeCounts::default(),
         };
