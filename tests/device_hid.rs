@@ -32,7 +32,7 @@ struct FakeWire(Plugs, usize);
 
 impl Bus for FakeBus {
     fn list(&mut self) -> Vec<Found> {
-        let there = self.0.iter().map(|plug| plug.lock().unwrap());
+        let there = self.0.iter().map(|plug| plug.lock().expect("no test panicked"));
         there
             .filter(|plug| !plug.unplugged)
             .filter_map(|plug| plug.found.clone())
@@ -40,9 +40,9 @@ impl Bus for FakeBus {
     }
 
     fn open(&mut self, found: &Found) -> Result<Box<dyn Wire>, OpenError> {
-        let is_it = |plug: &Mutex<Plug>| plug.lock().unwrap().found.as_ref() == Some(found);
+        let is_it = |plug: &Mutex<Plug>| plug.lock().expect("no test panicked").found.as_ref() == Some(found);
         let at = self.0.iter().position(is_it).expect("a listed device");
-        if self.0[at].lock().unwrap().denied {
+        if self.0[at].lock().expect("no test panicked").denied {
             return Err(OpenError::Denied);
         }
         Ok(Box::new(FakeWire(Arc::clone(&self.0), at)))
@@ -51,7 +51,7 @@ impl Bus for FakeBus {
 
 impl FakeWire {
     fn plug(&self) -> std::sync::MutexGuard<'_, Plug> {
-        self.0[self.1].lock().unwrap()
+        self.0[self.1].lock().expect("no test panicked")
     }
 }
 
@@ -115,7 +115,7 @@ fn until(listener: &HidListener, all: &mut Vec<DeviceFrame>, enough: impl Fn(&[D
 }
 
 fn listen(plugs: &Plugs) -> HidListener {
-    HidListener::start(Box::new(FakeBus(Arc::clone(plugs))), HidOptions::default()).unwrap()
+    HidListener::start(Box::new(FakeBus(Arc::clone(plugs))), HidOptions::default()).expect("a thread")
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn two_tables_speak_and_one_goes_and_comes_back() {
     let built = Shape::default().build();
     for plug in plugs.iter() {
         let report = built.encode(&[Sent::at(7, 100, 100)], 1, 0);
-        plug.lock().unwrap().reports.push_back(report);
+        plug.lock().expect("no test panicked").reports.push_back(report);
     }
     let listener = listen(&plugs);
     let mut all = Vec::new();
@@ -150,10 +150,10 @@ fn two_tables_speak_and_one_goes_and_comes_back() {
         assert_eq!(touching[0].id, 7);
     }
 
-    plugs[0].lock().unwrap().unplugged = true;
+    plugs[0].lock().expect("no test panicked").unplugged = true;
     until(&listener, &mut all, |all| all.len() == 5);
     assert_eq!(all[4], DeviceFrame::Unplugged { device: 0 });
-    plugs[0].lock().unwrap().unplugged = false;
+    plugs[0].lock().expect("no test panicked").unplugged = false;
     until(&listener, &mut all, |all| all.len() == 6);
     assert_eq!(all[5], plugged(2, "table 1"));
 
@@ -172,7 +172,7 @@ fn two_tables_speak_and_one_goes_and_comes_back() {
 #[test]
 fn a_table_that_may_not_be_opened_is_told_once_and_tried_again() {
     let plugs: Plugs = Arc::new(vec![table(1)]);
-    plugs[0].lock().unwrap().denied = true;
+    plugs[0].lock().expect("no test panicked").denied = true;
     let listener = listen(&plugs);
     let mut all = Vec::new();
     until(&listener, &mut all, |all| all.len() == 1);
@@ -183,7 +183,7 @@ fn a_table_that_may_not_be_opened_is_told_once_and_tried_again() {
     };
     assert_eq!(all[0], denied);
     std::thread::sleep(Duration::from_millis(1500));
-    plugs[0].lock().unwrap().denied = false;
+    plugs[0].lock().expect("no test panicked").denied = false;
     until(&listener, &mut all, |all| all.len() == 2);
     assert!(matches!(all[1], DeviceFrame::Plugged { .. }));
 }
@@ -195,7 +195,7 @@ fn a_touchpad_is_left_alone_and_a_touchscreen_is_made_one() {
     items.open(TOUCH_PAD, 1);
     Shape::default().report(&mut items);
     items.close();
-    plugs[0].lock().unwrap().descriptor = items.0;
+    plugs[0].lock().expect("no test panicked").descriptor = items.0;
     let mut items = Items::default();
     items.open(hid_common::TOUCH_SCREEN, 1);
     Shape::default().report(&mut items);
@@ -203,7 +203,7 @@ fn a_touchpad_is_left_alone_and_a_touchscreen_is_made_one() {
         .item(0x84, 9)
         .fields(0xb0, hid_common::INPUT_MODE, [0, 10], 8, 1)
         .close();
-    plugs[1].lock().unwrap().descriptor = items.0;
+    plugs[1].lock().expect("no test panicked").descriptor = items.0;
     let listener = listen(&plugs);
     let mut all = Vec::new();
     until(&listener, &mut all, |all| !all.is_empty());
@@ -211,8 +211,8 @@ fn a_touchpad_is_left_alone_and_a_touchscreen_is_made_one() {
         panic!("{all:?}")
     };
     assert_eq!(name, "table 2");
-    assert_eq!(plugs[1].lock().unwrap().told, [[9, 2]]);
-    assert!(plugs[0].lock().unwrap().told.is_empty());
+    assert_eq!(plugs[1].lock().expect("no test panicked").told, [[9, 2]]);
+    assert!(plugs[0].lock().expect("no test panicked").told.is_empty());
 }
 
 #[test]
@@ -230,10 +230,10 @@ fn a_flood_of_garbage_neither_blocks_nor_grows_the_queue() {
         bytes[0] = if noise >> 63 == 0 { 1 } else { (noise >> 32) as u8 };
         bytes
     });
-    plugs[0].lock().unwrap().reports.extend(garbage);
+    plugs[0].lock().expect("no test panicked").reports.extend(garbage);
     let last = built.encode(&[], 0, 0);
-    plugs[0].lock().unwrap().reports.push_back(last);
-    while !plugs[0].lock().unwrap().reports.is_empty() {
+    plugs[0].lock().expect("no test panicked").reports.push_back(last);
+    while !plugs[0].lock().expect("no test panicked").reports.is_empty() {
         std::thread::sleep(Duration::from_millis(2));
     }
     std::thread::sleep(Duration::from_millis(20));

@@ -105,9 +105,9 @@ proptest! {
             let t_us = 1_000_000 + i as u64 * 10_000;
             let scan_mask = shape.scan_bits.map_or(0, |bits| (1 << bits) - 1);
             let reports = if counted {
-                built.frame(&all, shape.slots, t_us / 100 & scan_mask)
+                built.frame(&all, shape.slots, (t_us / 100) & scan_mask)
             } else {
-                vec![built.encode(&all, 0, t_us / 100 & scan_mask)]
+                vec![built.encode(&all, 0, (t_us / 100) & scan_mask)]
             };
             let last = reports.len() - 1;
             for (k, bytes) in reports.iter().enumerate() {

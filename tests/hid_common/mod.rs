@@ -4,35 +4,35 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 /// A page and a number.
-pub type Usage = (u16, u16);
+pub(crate) type Usage = (u16, u16);
 
-pub const TOUCH_SCREEN: Usage = (0x0d, 0x04);
-pub const TOUCH_PAD: Usage = (0x0d, 0x05);
-pub const PEN: Usage = (0x0d, 0x02);
-pub const MOUSE: Usage = (0x01, 0x02);
-pub const X: Usage = (0x01, 0x30);
-pub const Y: Usage = (0x01, 0x31);
-pub const FINGER: Usage = (0x0d, 0x22);
-pub const IN_RANGE: Usage = (0x0d, 0x32);
-pub const TIP: Usage = (0x0d, 0x42);
-pub const CONFIDENCE: Usage = (0x0d, 0x47);
-pub const WIDTH: Usage = (0x0d, 0x48);
-pub const HEIGHT: Usage = (0x0d, 0x49);
-pub const ID: Usage = (0x0d, 0x51);
-pub const INPUT_MODE: Usage = (0x0d, 0x52);
-pub const DEVICE_IDENTIFIER: Usage = (0x0d, 0x53);
-pub const COUNT: Usage = (0x0d, 0x54);
-pub const COUNT_MAX: Usage = (0x0d, 0x55);
-pub const SCAN_TIME: Usage = (0x0d, 0x56);
-pub const CONFIGURATION: Usage = (0x0d, 0x0e);
+pub(crate) const TOUCH_SCREEN: Usage = (0x0d, 0x04);
+pub(crate) const TOUCH_PAD: Usage = (0x0d, 0x05);
+pub(crate) const PEN: Usage = (0x0d, 0x02);
+pub(crate) const MOUSE: Usage = (0x01, 0x02);
+pub(crate) const X: Usage = (0x01, 0x30);
+pub(crate) const Y: Usage = (0x01, 0x31);
+pub(crate) const FINGER: Usage = (0x0d, 0x22);
+pub(crate) const IN_RANGE: Usage = (0x0d, 0x32);
+pub(crate) const TIP: Usage = (0x0d, 0x42);
+pub(crate) const CONFIDENCE: Usage = (0x0d, 0x47);
+pub(crate) const WIDTH: Usage = (0x0d, 0x48);
+pub(crate) const HEIGHT: Usage = (0x0d, 0x49);
+pub(crate) const ID: Usage = (0x0d, 0x51);
+pub(crate) const INPUT_MODE: Usage = (0x0d, 0x52);
+pub(crate) const DEVICE_IDENTIFIER: Usage = (0x0d, 0x53);
+pub(crate) const COUNT: Usage = (0x0d, 0x54);
+pub(crate) const COUNT_MAX: Usage = (0x0d, 0x55);
+pub(crate) const SCAN_TIME: Usage = (0x0d, 0x56);
+pub(crate) const CONFIGURATION: Usage = (0x0d, 0x0e);
 
 /// Writes the items of a descriptor.
 #[derive(Clone, Default)]
-pub struct Items(pub Vec<u8>);
+pub(crate) struct Items(pub(crate) Vec<u8>);
 
 impl Items {
     /// Any item with the shortest data that holds `value`.
-    pub fn item(&mut self, prefix: u8, value: i64) -> &mut Self {
+    pub(crate) fn item(&mut self, prefix: u8, value: i64) -> &mut Self {
         let (code, length) = match value {
             -128..=127 => (1, 1),
             -32_768..=32_767 => (2, 2),
@@ -43,19 +43,19 @@ impl Items {
         self
     }
 
-    pub fn open(&mut self, (page, usage): Usage, kind: u8) -> &mut Self {
+    pub(crate) fn open(&mut self, (page, usage): Usage, kind: u8) -> &mut Self {
         self.item(0x04, page.into())
             .item(0x08, usage.into())
             .item(0xa0, kind.into())
     }
 
-    pub fn close(&mut self) -> &mut Self {
+    pub(crate) fn close(&mut self) -> &mut Self {
         self.0.push(0xc0);
         self
     }
 
     /// `count` fields of one usage; `kind` is 0x80 for input, 0xb0 for feature.
-    pub fn fields(
+    pub(crate) fn fields(
         &mut self,
         kind: u8,
         (page, usage): Usage,
@@ -69,7 +69,7 @@ impl Items {
         self.item(kind, 2)
     }
 
-    pub fn pad(&mut self, bits: u32) -> &mut Self {
+    pub(crate) fn pad(&mut self, bits: u32) -> &mut Self {
         if bits > 0 {
             self.item(0x74, bits.into()).item(0x94, 1).item(0x80, 3);
         }
@@ -79,28 +79,32 @@ impl Items {
 
 /// How a touchscreen reports.
 #[derive(Clone, Debug)]
-pub struct Shape {
-    pub report_id: Option<u8>,
-    pub slots: usize,
-    pub id_bits: u32,
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a field that a device has or has not"
+)]
+pub(crate) struct Shape {
+    pub(crate) report_id: Option<u8>,
+    pub(crate) slots: usize,
+    pub(crate) id_bits: u32,
     /// Bits of coordinates, widths and heights, and their range.
-    pub xy_bits: u32,
-    pub x: [i64; 2],
-    pub y: [i64; 2],
-    pub physical_mm: Option<[i64; 2]>,
-    pub tip: bool,
-    pub in_range: bool,
-    pub confidence: bool,
-    pub area: bool,
+    pub(crate) xy_bits: u32,
+    pub(crate) x: [i64; 2],
+    pub(crate) y: [i64; 2],
+    pub(crate) physical_mm: Option<[i64; 2]>,
+    pub(crate) tip: bool,
+    pub(crate) in_range: bool,
+    pub(crate) confidence: bool,
+    pub(crate) area: bool,
     /// Each position twice: where it is touched, and the middle of the area.
-    pub two_positions: bool,
-    pub count_bits: Option<u32>,
-    pub scan_bits: Option<u32>,
-    pub max_feature: Option<u8>,
+    pub(crate) two_positions: bool,
+    pub(crate) count_bits: Option<u32>,
+    pub(crate) scan_bits: Option<u32>,
+    pub(crate) max_feature: Option<u8>,
     /// Each contact in a collection of its own.
-    pub collections: bool,
+    pub(crate) collections: bool,
     /// The contact id is declared constant.
-    pub constant_id: bool,
+    pub(crate) constant_id: bool,
 }
 
 impl Default for Shape {
@@ -129,20 +133,20 @@ impl Default for Shape {
 
 /// One slot of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sent {
-    pub id: u64,
-    pub tip: bool,
-    pub in_range: bool,
-    pub confidence: bool,
-    pub x: i64,
-    pub y: i64,
-    pub w: i64,
-    pub h: i64,
+pub(crate) struct Sent {
+    pub(crate) id: u64,
+    pub(crate) tip: bool,
+    pub(crate) in_range: bool,
+    pub(crate) confidence: bool,
+    pub(crate) x: i64,
+    pub(crate) y: i64,
+    pub(crate) w: i64,
+    pub(crate) h: i64,
 }
 
 impl Sent {
     /// A finger.
-    pub fn at(id: u64, x: i64, y: i64) -> Self {
+    pub(crate) fn at(id: u64, x: i64, y: i64) -> Self {
         Self {
             id,
             tip: true,
@@ -156,7 +160,7 @@ impl Sent {
     }
 
     /// The same contact, lifted.
-    pub fn lifted(self) -> Self {
+    pub(crate) fn lifted(self) -> Self {
         Self {
             tip: false,
             in_range: false,
@@ -166,15 +170,15 @@ impl Sent {
 }
 
 /// A descriptor and where its fields stand: usage, slot, first bit, bits.
-pub struct Built {
-    pub bytes: Vec<u8>,
+pub(crate) struct Built {
+    pub(crate) bytes: Vec<u8>,
     fields: Vec<(Usage, usize, u32, u32)>,
     report_bits: u32,
     id: Option<u8>,
 }
 
 impl Shape {
-    pub fn build(&self) -> Built {
+    pub(crate) fn build(&self) -> Built {
         let mut items = Items::default();
         items.open(TOUCH_SCREEN, 1);
         let built = self.report(&mut items);
@@ -192,7 +196,7 @@ impl Shape {
     }
 
     /// The touch report alone, inside any application.
-    pub fn report(&self, items: &mut Items) -> Built {
+    pub(crate) fn report(&self, items: &mut Items) -> Built {
         let mut out = Layout {
             items,
             at: 0,
@@ -285,7 +289,7 @@ impl Layout<'_> {
 
 impl Built {
     /// A report with these slots, this contact count and scan time.
-    pub fn encode(&self, sent: &[Sent], count: u64, scan: u64) -> Vec<u8> {
+    pub(crate) fn encode(&self, sent: &[Sent], count: u64, scan: u64) -> Vec<u8> {
         let mut report = vec![0; self.report_bits as usize / 8];
         if let Some(id) = self.id {
             report[0] = id;
@@ -314,7 +318,7 @@ impl Built {
     }
 
     /// A frame in as many reports as it takes: the count in the first.
-    pub fn frame(&self, sent: &[Sent], slots: usize, scan: u64) -> Vec<Vec<u8>> {
+    pub(crate) fn frame(&self, sent: &[Sent], slots: usize, scan: u64) -> Vec<Vec<u8>> {
         if sent.is_empty() {
             return vec![self.encode(&[], 0, scan)];
         }

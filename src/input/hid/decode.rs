@@ -270,7 +270,7 @@ impl Decoder {
             .confidence
             .filter(|_| tells)
             .map(|sure| if sure { 1.0 } else { 0.0 });
-        let known = self.down.iter().position(|down| down.touching.id == id);
+        let known = self.find(id);
         if let Some(i) = known
             && self.down[i].frame == self.frame
         {
@@ -285,6 +285,17 @@ impl Decoder {
             None if !seen.tip => {}
             _ => self.touch(known, id, seen, confidence),
         }
+    }
+
+    /// Where the contact is among those that are down. Devices keep their order, so it is looked for at its place in
+    /// the frame first.
+    fn find(&self, id: u64) -> Option<usize> {
+        let place = self.received as usize;
+        let is_it = |down: &Down| down.touching.id == id;
+        if self.down.get(place).is_some_and(is_it) {
+            return Some(place);
+        }
+        self.down.iter().position(is_it)
     }
 
     /// The contact's name by what the slot says.

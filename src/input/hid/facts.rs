@@ -108,10 +108,12 @@ fn of_slot(slot: &Slot) -> Vec<(&'static str, Bits, Option<Axis>)> {
     found
 }
 
-fn of_frame(report: &TouchReport) -> impl Iterator<Item = (&'static str, Bits)> {
+fn of_frame(report: &TouchReport) -> Vec<(&'static str, Bits)> {
     let count = report.count.map(|bits| ("contact_count", bits));
     let time = report.scan_time.map(|(bits, _)| ("scan_time", bits));
-    count.into_iter().chain(time)
+    let mut found: Vec<_> = count.into_iter().chain(time).collect();
+    found.sort_by_key(|(_, bits)| bits.start);
+    found
 }
 
 fn fields(report: &TouchReport) -> BTreeMap<&'static str, usize> {
@@ -119,7 +121,7 @@ fn fields(report: &TouchReport) -> BTreeMap<&'static str, usize> {
     for (name, ..) in report.slots.iter().flat_map(of_slot) {
         *fields.entry(name).or_insert(0) += 1;
     }
-    fields.extend(of_frame(report).map(|(name, _)| (name, 1)));
+    fields.extend(of_frame(report).into_iter().map(|(name, _)| (name, 1)));
     fields
 }
 
@@ -156,12 +158,12 @@ pub fn describe(descriptor: &Descriptor, quirks: Quirks, facts: &Facts) -> Strin
             line(&format!("{:>5} {:>5}  {name:<13}  {range}", bits.start, bits.len));
         }
     }
-    if let [first, second, ..] = &report.slots[..] {
+    if let [first, second, more @ ..] = &report.slots[..] {
         let apart = i64::from(second.x.bits.start) - i64::from(first.x.bits.start);
-        line(&format!(
-            "             and {} more slots, {apart} bits apart",
-            report.slots.len() - 1
-        ));
+        line(&match more.len() {
+            0 => format!("             and 1 more slot, {apart} bits on"),
+            more => format!("             and {} more slots, each {apart} bits on", more + 1),
+        });
     }
     for (name, bits) in of_frame(report) {
         line(&format!("{:>5} {:>5}  {name}", bits.start, bits.len));
