@@ -50,7 +50,7 @@ fn descriptor(criterion: &mut Criterion) {
     .build()
     .bytes;
     criterion.bench_function("hid_descriptor", |bencher| {
-        bencher.iter(|| Descriptor::parse(&bytes))
+        bencher.iter(|| Descriptor::parse(&bytes));
     });
 }
 

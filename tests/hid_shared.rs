@@ -7,7 +7,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use orogen::input::hid::{Decoder, Descriptor, Quirks, Refusal};
+use orogen::input::hid::{Decoder, Descriptor, Quirk, Quirks, Refusal};
 use serde_json::Value;
 
 /// The devices of this file, or none after saying that it is skipped.
@@ -128,7 +128,7 @@ fn the_quirks_of_known_devices_are_known() {
             &descriptor(&device),
             10,
         );
-        let names: Vec<&str> = quirks.iter().map(|quirk| quirk.name()).collect();
+        let names: Vec<&str> = quirks.iter().map(Quirk::name).collect();
         assert_eq!(names.len(), told.len(), "{}: {names:?}", device["name"]);
         assert!(
             told.iter().all(|t| names.contains(&t.as_str().unwrap())),

@@ -3,7 +3,7 @@
 //! | step | what it yields |
 //! |---|---|
 //! | [`Descriptor::parse`] | the report with the contacts, or why the device is no touchscreen |
-//! | [`Features`](feature::Features) | what is to be asked of the device, and how it is told to be a touchscreen |
+//! | [`Features`] | what is to be asked of the device, and how it is told to be a touchscreen |
 //! | [`Quirks::choose`] | how it departs from the rules |
 //! | [`Decoder`] | reports → who touches now |
 //! | [`Facts`], [`describe`] | the device for tools, and for people |
