@@ -4,6 +4,8 @@
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
+#[path = "../fuzz/hid_checks.rs"]
+mod hid_checks;
 
 use std::fs;
 use std::path::Path;
@@ -51,11 +53,22 @@ fn planet_image() {
     assert!(replay("planet_image", checks::planet_image) >= 3);
 }
 
+#[test]
+fn hid_descriptor() {
+    assert!(replay("hid_descriptor", hid_checks::descriptor) >= 5);
+}
+
+#[test]
+fn hid_report() {
+    assert!(replay("hid_report", hid_checks::reports) >= 3);
+}
+
 /// Seeds that are refused at the first line would teach the fuzzer nothing.
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
     use orogen::input::evemu::{EvemuOptions, import_evemu};
+    use orogen::input::hid::Descriptor;
     use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
@@ -75,6 +88,10 @@ fn seeds_are_read() {
     Heights::decode(&planet("heights.png"), [0.0, 1.0]).unwrap();
     Colours::decode(&planet("plates.png")).unwrap();
     Colours::decode(&planet("plates.exr")).unwrap();
+    for name in ["hybrid", "parallel", "serial", "features"] {
+        let bytes = fs::read(seeds.join(format!("hid_descriptor/{name}.bin"))).unwrap();
+        assert!(Descriptor::parse(&bytes).unwrap().touch.is_ok(), "{name}");
+    }
     let options = EvemuOptions {
         range: None,
         size_mm: Some([100.0, 60.0].into()),

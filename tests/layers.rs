@@ -172,6 +172,22 @@ const RULES: &[Rule] = &[
         reason: "sources know no world",
     },
     Rule {
+        module: "device",
+        forbidden: &[
+            "winit",
+            "wgpu",
+            "egui::",
+            "crate::mountain",
+            "crate::terrain",
+            "crate::sim",
+            "crate::live",
+            "crate::picture",
+            "crate::app",
+            "crate::cli",
+        ],
+        reason: "who opens devices knows neither window nor worlds",
+    },
+    Rule {
         module: "ui",
         forbidden: &[
             "winit",

@@ -2,6 +2,7 @@
 
 mod bench;
 mod console;
+mod devices;
 mod erode;
 mod failure;
 mod globe;
@@ -60,6 +61,8 @@ enum Command {
     Erode(ErodeArgs),
     /// Turn a recording of another tool (evemu, multi-touch protocol B) into a gesture file.
     Import(ImportArgs),
+    /// The touch devices that are plugged in, or what a HID report descriptor means.
+    Devices(DevicesArgs),
     /// Is this machine fast enough? Every stage at the sizes of the literature.
     Bench(BenchArgs),
 }
@@ -309,6 +312,19 @@ struct ImportArgs {
 }
 
 #[derive(Debug, Args)]
+struct DevicesArgs {
+    /// Explain this descriptor instead: hexadecimal in any form, or a recording of hid-recorder.
+    #[arg(long, value_name = "HEXFILE")]
+    descriptor: Option<PathBuf>,
+    /// For tools: one object for a descriptor, a list of them for what is plugged in.
+    #[arg(long)]
+    json: bool,
+    /// Print the udev rule that lets you listen to the touchscreens that are plugged in.
+    #[arg(long, conflicts_with_all = ["descriptor", "json"])]
+    udev: bool,
+}
+
+#[derive(Debug, Args)]
 struct BenchArgs {
     /// JSON lines instead of a table.
     #[arg(long)]
@@ -340,6 +356,7 @@ pub fn main() -> ExitCode {
         Some(Command::Planet(args)) => globe::run(&args, console),
         Some(Command::Erode(args)) => erode::run(&args, console),
         Some(Command::Import(args)) => import::run(&args),
+        Some(Command::Devices(args)) => devices::run(&args, console),
         Some(Command::Bench(args)) => bench::run(&args),
     };
     match done {

@@ -3,6 +3,7 @@
 #[cfg(feature = "app")]
 mod frames;
 mod globe;
+mod touch;
 
 use std::time::Instant;
 
@@ -77,6 +78,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         bench.folds()?;
         bench.picture()?;
         bench.globe()?;
+        bench.touch()?;
         #[cfg(feature = "app")]
         bench.frames();
         Ok(bench.rows)
