@@ -5,25 +5,26 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use serde_json::Value;
 
-use super::line::{
+use super::codes::{
     ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_SLOT, ABS_MT_TOUCH_MAJOR,
     ABS_MT_WIDTH_MAJOR, EV_ABS,
 };
-use super::{EvemuFault, EvemuOptions};
+
 use crate::gesture::contact::MAX_CONTACTS;
 use crate::gesture::file::MAX_SIZE_MM;
 use crate::gesture::json::Expected;
+use crate::input::import::{ImportFault, ImportOptions};
 
 /// Least and greatest value of an axis, in device units.
 type Range = (f64, f64);
 
 /// Range and resolution of an axis, as far as they are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Axis {
-    pub(super) min: Option<i32>,
-    pub(super) max: Option<i32>,
+pub(in super::super) struct Axis {
+    pub(in super::super) min: Option<i32>,
+    pub(in super::super) max: Option<i32>,
     /// Units per millimetre.
-    pub(super) resolution: Option<i32>,
+    pub(in super::super) resolution: Option<i32>,
 }
 
 impl Axis {
@@ -92,13 +93,13 @@ impl Axes {
     /// are absent or wrong on one device in eight.
     pub(super) fn plane(
         &self,
-        options: &EvemuOptions,
+        options: &ImportOptions,
         warnings: &mut Vec<String>,
-    ) -> Result<Plane, EvemuFault> {
+    ) -> Result<Plane, ImportFault> {
         let range = |code| self.ask(code, Axis::range);
         let told = range(ABS_MT_POSITION_X).zip(range(ABS_MT_POSITION_Y));
         let given = options.range.map(given_range).transpose()?;
-        let ((x0, x1), (y0, y1)) = given.or(told).ok_or(EvemuFault::NoRange)?;
+        let ((x0, x1), (y0, y1)) = given.or(told).ok_or(ImportFault::NoRange)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
             warnings.push("--range used in place of the recording's own".to_owned());
         }
@@ -109,7 +110,7 @@ impl Axes {
             .map(|(x, y)| units / DVec2::new(x.into(), y.into()))
             .filter(|size| is_size(*size));
         let given = options.size_mm.map(given_size).transpose()?;
-        let size_mm = given.or(told).ok_or(EvemuFault::NoSize)?;
+        let size_mm = given.or(told).ok_or(ImportFault::NoSize)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
             warnings.push("--size-mm used in place of the recording's own".to_owned());
         }
@@ -140,7 +141,7 @@ impl Axes {
     }
 }
 
-fn given_range(range: [f64; 4]) -> Result<(Range, Range), EvemuFault> {
+fn given_range(range: [f64; 4]) -> Result<(Range, Range), ImportFault> {
     let [x0, x1, y0, y1] = range;
     // Differences of what fits in 32 bits stay exact.
     let reach = f64::from(i32::MAX) + 1.0;
@@ -151,7 +152,7 @@ fn given_range(range: [f64; 4]) -> Result<(Range, Range), EvemuFault> {
     Err(Expected::new("--range", what, &Value::from(range.to_vec())).into())
 }
 
-fn given_size(size: DVec2) -> Result<DVec2, EvemuFault> {
+fn given_size(size: DVec2) -> Result<DVec2, ImportFault> {
     if is_size(size) {
         return Ok(size);
     }
