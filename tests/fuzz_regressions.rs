@@ -37,6 +37,11 @@ fn evemu_import() {
 }
 
 #[test]
+fn libinput_import() {
+    assert!(replay("libinput_import", checks::libinput_import) >= 1);
+}
+
+#[test]
 fn settings() {
     assert!(replay("settings", checks::settings) >= 2);
 }
@@ -55,7 +60,7 @@ fn planet_image() {
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
-    use orogen::input::import::{ImportOptions, import_evemu};
+    use orogen::input::import::{ImportOptions, import_evemu, import_libinput};
     use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
@@ -84,4 +89,7 @@ fn seeds_are_read() {
         let imported = import_evemu(fs::File::open(path).unwrap(), name, &options).unwrap();
         assert!(imported.frames.len() >= 3, "{name}");
     }
+    let path = seeds.join("libinput_import/two_devices.yml");
+    let imported = import_libinput(fs::File::open(path).unwrap(), "yml", &options).unwrap();
+    assert!(imported.frames.len() >= 3);
 }

@@ -52,3 +52,44 @@ pub(crate) fn shown(frames: &[InputFrame]) -> Vec<String> {
     };
     frames.iter().map(one).collect()
 }
+
+/// What evemu recorded, as `libinput record` would have written it: the same events and axes of one device.
+pub(crate) fn as_libinput(evemu: &str, node: &str, properties: &str) -> String {
+    let (mut name, mut axes, mut events) = (String::new(), String::new(), String::new());
+    let mut frame_ended = true;
+    for line in evemu.lines() {
+        let line = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let hex = |word: &str| u16::from_str_radix(word, 16).expect("hexadecimal");
+        match words[..] {
+            ["N:", ..] => name = line[2..].trim().to_owned(),
+            ["A:", code, min, max, fuzz, flat, ref more @ ..] => {
+                let (code, resolution) = (hex(code), more.first().unwrap_or(&"0"));
+                axes += &format!("      {code}: [{min}, {max}, {fuzz}, {flat}, {resolution}]\n");
+            }
+            ["E:", time, kind, code, value] => {
+                let (sec, usec) = time.split_once('.').expect("a time");
+                let (sec, usec): (u64, u64) = (sec.parse().expect("s"), usec.parse().expect("µs"));
+                let (kind, code, value) = (hex(kind), hex(code), value.parse::<i32>().expect("a value"));
+                if frame_ended {
+                    events += "  - evdev:\n";
+                }
+                events += &format!(
+                    "    - [{sec:3}, {usec:6}, {kind:3}, {code:3}, {value:7}] # EV_ABS / as it is\n"
+                );
+                frame_ended = (kind, code) == (0, 0);
+            }
+            _ => {}
+        }
+    }
+    format!(
+        "- node: {node}\n  evdev:\n    # Name: {name}\n    name: \"{name}\"\n    id: [3, 1386, 93, 5]\n    codes:\n      \
+         0: [0, 1, 2] # EV_SYN\n    absinfo:\n{axes}    properties: [{properties}]\n  hid: [\n    0x05, 0x0d,\n    0x09, \
+         0x04\n  ]\n  udev:\n    properties:\n    - ID_INPUT=1\n  quirks:\n  events:\n  # Current time is 12:34:05\n{events}"
+    )
+}
+
+/// The head of a file of `libinput record`, before its devices.
+pub(crate) const LIBINPUT_HEAD: &str = "# libinput record\nversion: 1\nndevices: 1\nlibinput:\n  version: \"1.22.1\"\n  git: \
+                                        \"unknown\"\nsystem:\n  os: \"debian:12\"\n  kernel: \"6.1.0\"\n  dmi: \
+                                        \"dmi:bvnX:bvr1:\"\ndevices:\n";

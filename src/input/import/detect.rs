@@ -10,11 +10,14 @@ const SHOWN_CHARS: usize = 40;
 pub enum Recorder {
     /// `evemu-record`.
     Evemu,
+    /// `libinput record`.
+    Libinput,
 }
 
 impl Recorder {
     /// All of them, in words.
-    pub(super) const UNDERSTOOD: &str = "a recording of evemu-record (N:, A:, E: lines)";
+    pub(super) const UNDERSTOOD: &str =
+        "a recording of evemu-record (N:, A:, E: lines) or libinput record (YAML with version: and devices:)";
 
     /// The tool whose recording begins with `head`.
     ///
@@ -40,6 +43,7 @@ impl Recorder {
     fn by_line(line: &str) -> Option<Self> {
         let (key, _) = line.split_once(':')?;
         match key {
+            "version" | "ndevices" | "devices" | "libinput" => Some(Self::Libinput),
             "A" | "B" | "L" | "S" | "I" | "E" => Some(Self::Evemu),
             _ => None,
         }

@@ -33,6 +33,15 @@ pub enum ImportFault {
     /// A field does not hold what it should.
     #[error(transparent)]
     Expected(#[from] Expected),
+    /// The recording is not built as it should be.
+    #[error("expected {0}, found something else")]
+    Form(String),
+    /// No device of the recording is a touchscreen.
+    #[error("expected a touchscreen among the devices, found {found}")]
+    NoTouchscreen {
+        /// The devices, as far as they fit.
+        found: String,
+    },
     /// The recording cannot be read on.
     #[error("expected to read on: {0}")]
     Io(#[from] io::Error),
@@ -65,9 +74,7 @@ pub enum ImportFault {
         found: &'static str,
     },
     /// Nothing says what the device units mean.
-    #[error(
-        "expected a range of ABS_MT_POSITION_X and _Y (A: 35, A: 36), found none: give --range X0,X1,Y0,Y1"
-    )]
+    #[error("expected a range of ABS_MT_POSITION_X and _Y, found none: give --range X0,X1,Y0,Y1")]
     NoRange,
     /// Nothing says how large the surface is.
     #[error(

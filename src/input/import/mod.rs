@@ -3,6 +3,7 @@
 //! | tool | module | what it holds |
 //! |---|---|---|
 //! | `evemu-record` | [`evemu`] | the kernel's events, protocols A and B |
+//! | `libinput record` | [`libinput`] | the same, in YAML, of several devices |
 //!
 //! [`import_recording`] finds out which tool wrote a recording; nothing else does, names of files least of all. Every
 //! importer takes any bytes, and refuses what it does not understand in one line that names file and line.
@@ -11,6 +12,7 @@ mod detect;
 mod evdev;
 pub mod evemu;
 mod fault;
+pub mod libinput;
 mod lines;
 
 use std::io::Read;
@@ -21,6 +23,7 @@ use crate::gesture::contact::InputFrame;
 pub use detect::Recorder;
 pub use evemu::import_evemu;
 pub use fault::{ImportError, ImportFault};
+pub use libinput::import_libinput;
 pub use lines::{MAX_LINE_BYTES, MAX_LINES};
 
 /// Bytes from which it is told which tool wrote a recording: the longest description of a device fits twice.
@@ -71,6 +74,7 @@ pub fn import_recording<R: Read>(
     let whole = head.chain(source);
     match recorder {
         Recorder::Evemu => import_evemu(whole, name, options),
+        Recorder::Libinput => import_libinput(whole, name, options),
     }
 }
 

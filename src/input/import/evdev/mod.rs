@@ -115,6 +115,11 @@ impl Recording {
         self.torn = Some(line);
     }
 
+    /// Moments in which contacts changed or were told.
+    pub(super) fn moments(&self) -> usize {
+        self.frames.len()
+    }
+
     /// Takes an event, and the line on which it stands.
     pub(super) fn event(&mut self, event: Event, line: usize) -> Result<(), ImportFault> {
         let (first, last) = self.span_us.unwrap_or((event.t_us, event.t_us));
