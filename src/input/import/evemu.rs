@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use super::evdev::{Axis, Event, Recording};
 use super::lines::Lines;
+use super::time::micros;
 use super::{ImportError, ImportFault, ImportOptions, Imported};
 use crate::gesture::json::Expected;
 
@@ -150,19 +151,6 @@ fn event(rest: &str) -> Result<Line, Expected> {
         code: hexadecimal("E: code", code)?,
         value: decimal("E: value", value)?,
     }))
-}
-
-fn micros(text: &str) -> Result<u64, Expected> {
-    let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
-    let parse = || {
-        // Fewer than six digits would be a fraction for some writers and a count for others.
-        let (sec, usec) = text
-            .split_once('.')
-            .filter(|(s, us)| digits(s) && digits(us) && us.len() == 6)?;
-        let sec: u64 = sec.parse().ok()?;
-        sec.checked_mul(1_000_000)?.checked_add(usec.parse().ok()?)
-    };
-    parse().ok_or_else(|| Expected::new("E: time", "seconds with six decimals", &Value::from(text)))
 }
 
 fn hexadecimal(field: &str, text: &str) -> Result<u16, Expected> {

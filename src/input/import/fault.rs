@@ -77,9 +77,7 @@ pub enum ImportFault {
     #[error("expected a range of ABS_MT_POSITION_X and _Y, found none: give --range X0,X1,Y0,Y1")]
     NoRange,
     /// Nothing says how large the surface is.
-    #[error(
-        "expected a resolution of ABS_MT_POSITION_X and _Y (units per mm), found none: give --size-mm W,H"
-    )]
+    #[error("expected a resolution of the positions (units per mm), found none: give --size-mm W,H")]
     NoSize,
     /// A position that is on no table.
     #[error(

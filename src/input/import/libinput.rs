@@ -30,6 +30,7 @@ use std::vec;
 use saphyr_parser::{BufferedInput, Event as Node, Parser, ScalarStyle};
 use serde_json::Value;
 
+use super::devices::{Candidate, choose};
 use super::evdev::codes::{ABS_MT_POSITION_X, ABS_MT_POSITION_Y};
 use super::evdev::{Axis, Event, Recording};
 use super::lines::Lines;
@@ -38,9 +39,6 @@ use crate::gesture::json::Expected;
 
 /// Deepest nesting that is followed: what the tool writes has six levels.
 const MAX_DEPTH: usize = 32;
-
-/// Most devices that an error or warning names.
-const MAX_NAMED: usize = 4;
 
 // Linux kernel, include/uapi/linux/input-event-codes.h.
 const INPUT_PROP_POINTER: i64 = 0;
@@ -78,54 +76,22 @@ pub fn import_libinput<R: Read>(
 
 /// The contacts of the touchscreen among the devices.
 fn import(
-    devices: Vec<Device>,
+    mut devices: Vec<Device>,
     name: &str,
     options: &ImportOptions,
     input: &Input,
     line: &mut usize,
 ) -> Result<Imported, ImportFault> {
-    let names: Vec<String> = devices.iter().map(Device::named).collect();
-    let touched = |device: &Device| device.recording.moments();
-    let chosen = (0..devices.len())
-        .filter(|&i| devices[i].kind() == Kind::Touchscreen)
-        .rev()
-        .max_by_key(|&i| touched(&devices[i]));
-    let Some(chosen) = chosen else {
-        return Err(ImportFault::NoTouchscreen {
-            found: listed(&names, None),
-        });
-    };
-    let several = devices.len() > 1;
-    let Some(mut device) = devices.into_iter().nth(chosen) else {
-        return Err(ImportFault::NoTouchscreen {
-            found: "nothing".to_owned(),
-        });
-    };
+    let candidates: Vec<Candidate> = devices.iter().map(Device::candidate).collect();
+    let (chosen, warning) = choose(&candidates)?;
+    let mut device = devices.swap_remove(chosen);
     if let Some(torn) = input.torn.take() {
         device.recording.torn(torn);
     }
     *line = device.line;
     let mut imported = device.recording.import(name, options, line)?;
-    if several {
-        imported.warnings.push(format!(
-            "taken: {}; left out: {}",
-            names[chosen],
-            listed(&names, Some(chosen))
-        ));
-    }
+    imported.warnings.extend(warning);
     Ok(imported)
-}
-
-/// The devices in words, without one of them.
-fn listed(names: &[String], but: Option<usize>) -> String {
-    let others = names.iter().enumerate().filter(|(i, _)| Some(*i) != but);
-    let others: Vec<&str> = others.map(|(_, name)| name.as_str()).collect();
-    let more = others.len().saturating_sub(MAX_NAMED);
-    match (others.as_slice(), more) {
-        ([], _) => "nothing".to_owned(),
-        (all, 0) => all.join(", "),
-        (all, more) => format!("{} and {more} more", all[..MAX_NAMED].join(", ")),
-    }
 }
 
 /// What a device is for.
@@ -175,13 +141,16 @@ impl Device {
         }
     }
 
-    fn named(&self) -> String {
-        let kind = match self.kind() {
-            Kind::Touchscreen => "touchscreen",
-            Kind::Touchpad => "touchpad",
-            Kind::Other => "device",
+    fn candidate(&self) -> Candidate {
+        let (kind, touched) = match self.kind() {
+            Kind::Touchscreen => ("touchscreen", Some(self.recording.moments())),
+            Kind::Touchpad => ("touchpad", None),
+            Kind::Other => ("device", None),
         };
-        format!("{kind} {:?} ({})", self.name, self.node.escape_debug())
+        Candidate {
+            name: format!("{kind} {:?} ({})", self.name, self.node.escape_debug()),
+            touched,
+        }
     }
 }
 

@@ -9,17 +9,22 @@
 //! importer takes any bytes, and refuses what it does not understand in one line that names file and line.
 
 mod detect;
+mod devices;
 mod evdev;
 pub mod evemu;
 mod fault;
 pub mod libinput;
 mod lines;
+mod time;
 
 use std::io::Read;
 
 use glam::DVec2;
+use serde_json::Value;
 
 use crate::gesture::contact::InputFrame;
+use crate::gesture::file::MAX_SIZE_MM;
+use crate::gesture::json::Expected;
 pub use detect::Recorder;
 pub use evemu::import_evemu;
 pub use fault::{ImportError, ImportFault};
@@ -39,6 +44,23 @@ pub struct ImportOptions {
     pub range: Option<[f64; 4]>,
     /// Size of the touching surface, mm.
     pub size_mm: Option<DVec2>,
+}
+
+impl ImportOptions {
+    /// The size that is given, if it is one.
+    fn size(&self) -> Result<Option<DVec2>, ImportFault> {
+        if self.size_mm.is_none_or(is_size) {
+            return Ok(self.size_mm);
+        }
+        let what = format!("W,H in mm, both above 0 and below {MAX_SIZE_MM}");
+        let found = Value::from(self.size_mm.map(|size| size.to_array().to_vec()));
+        Err(Expected::new("--size-mm", what, &found).into())
+    }
+}
+
+/// True for the size of a table, mm.
+fn is_size(size: DVec2) -> bool {
+    size.cmpgt(DVec2::ZERO).all() && size.cmplt(DVec2::splat(MAX_SIZE_MM)).all()
 }
 
 /// A recording, as a gesture file would hold it.

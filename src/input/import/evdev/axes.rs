@@ -11,9 +11,8 @@ use super::codes::{
 };
 
 use crate::gesture::contact::MAX_CONTACTS;
-use crate::gesture::file::MAX_SIZE_MM;
 use crate::gesture::json::Expected;
-use crate::input::import::{ImportFault, ImportOptions};
+use crate::input::import::{ImportFault, ImportOptions, is_size};
 
 /// Least and greatest value of an axis, in device units.
 type Range = (f64, f64);
@@ -109,7 +108,7 @@ impl Axes {
             .zip(resolution(ABS_MT_POSITION_Y))
             .map(|(x, y)| units / DVec2::new(x.into(), y.into()))
             .filter(|size| is_size(*size));
-        let given = options.size_mm.map(given_size).transpose()?;
+        let given = options.size()?;
         let size_mm = given.or(told).ok_or(ImportFault::NoSize)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
             warnings.push("--size-mm used in place of the recording's own".to_owned());
@@ -150,18 +149,6 @@ fn given_range(range: [f64; 4]) -> Result<(Range, Range), ImportFault> {
     }
     let what = "X0,X1,Y0,Y1 in device units with X0 < X1 and Y0 < Y1";
     Err(Expected::new("--range", what, &Value::from(range.to_vec())).into())
-}
-
-fn given_size(size: DVec2) -> Result<DVec2, ImportFault> {
-    if is_size(size) {
-        return Ok(size);
-    }
-    let what = format!("W,H in mm, both above 0 and below {MAX_SIZE_MM}");
-    Err(Expected::new("--size-mm", what, &Value::from(size.to_array().to_vec())).into())
-}
-
-fn is_size(size: DVec2) -> bool {
-    size.cmpgt(DVec2::ZERO).all() && size.cmplt(DVec2::splat(MAX_SIZE_MM)).all()
 }
 
 /// The touching surface in device units and millimetres.

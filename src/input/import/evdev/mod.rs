@@ -18,12 +18,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use super::time::Span;
 use super::{ImportFault, ImportOptions, Imported};
 use crate::gesture::contact::{
     Contact, ContactEvent, ContactKey, InputFrame, MAX_CONTACTS, MAX_COORDINATE_MM, Phase, Source,
     quantise_mm,
 };
-use crate::gesture::file::MAX_TIME_MS;
 use crate::gesture::json::Expected;
 pub(super) use axes::Axis;
 use axes::{Axes, Plane};
@@ -75,8 +75,7 @@ pub(super) struct Recording {
     /// The contacts of the frame in protocol A, if it tells of them.
     state: Option<Vec<Packet>>,
     frames: Vec<RawFrame>,
-    /// Time of the first event and of the last one, µs.
-    span_us: Option<(u64, u64)>,
+    span: Span,
     /// True from `SYN_DROPPED` to the next `SYN_REPORT`.
     dropping: bool,
     drops: usize,
@@ -122,17 +121,7 @@ impl Recording {
 
     /// Takes an event, and the line on which it stands.
     pub(super) fn event(&mut self, event: Event, line: usize) -> Result<(), ImportFault> {
-        let (first, last) = self.span_us.unwrap_or((event.t_us, event.t_us));
-        if event.t_us < last {
-            return Err(ImportFault::Backwards {
-                before_s: last as f64 / 1e6,
-                found_s: event.t_us as f64 / 1e6,
-            });
-        }
-        if (event.t_us - first) as f64 > MAX_TIME_MS * 1e3 {
-            return Err(ImportFault::LongTime);
-        }
-        self.span_us = Some((first, event.t_us));
+        self.span.advance(event.t_us)?;
         match (event.kind, event.code) {
             (codes::EV_SYN, codes::SYN_REPORT) => self.report(event.t_us, line),
             (codes::EV_SYN, codes::SYN_MT_REPORT) => self.packet()?,
@@ -267,7 +256,7 @@ impl Recording {
         }
         let mut warnings = Vec::new();
         let plane = self.axes.plane(options, &mut warnings)?;
-        let end_us = self.span_us.map_or(0, |span| span.1);
+        let end_us = self.span.end_us();
         let left = self.slots.drop_all();
         let mut down = left.len();
         self.push(end_us, last_line, Told::Events(left));
