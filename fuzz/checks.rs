@@ -8,7 +8,9 @@ use orogen::gesture::contact::{ContactEvent, InputFrame, Source};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
-use orogen::input::import::{ImportError, ImportOptions, Imported, import_evemu, import_libinput};
+use orogen::input::import::{
+    ImportError, ImportOptions, Imported, import_evemu, import_hid_recorder, import_libinput,
+};
 use orogen::input::planet::{Colours, HEIGHT_RANGE_M, Heights};
 use orogen::rock::Stratigraphy;
 use orogen::settings::Settings;
@@ -37,6 +39,11 @@ pub(crate) fn evemu_import(bytes: &[u8]) {
 /// The same of libinput record.
 pub(crate) fn libinput_import(bytes: &[u8]) {
     imported(|options| import_libinput(bytes, "fuzz", options));
+}
+
+/// The same of hid-recorder.
+pub(crate) fn hid_recorder_import(bytes: &[u8]) {
+    imported(|options| import_hid_recorder(bytes, "fuzz", options));
 }
 
 /// What is imported is a gesture file, and plays.

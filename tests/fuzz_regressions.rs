@@ -37,6 +37,11 @@ fn evemu_import() {
 }
 
 #[test]
+fn hid_recorder_import() {
+    assert!(replay("hid_recorder_import", checks::hid_recorder_import) >= 1);
+}
+
+#[test]
 fn libinput_import() {
     assert!(replay("libinput_import", checks::libinput_import) >= 1);
 }
@@ -60,7 +65,7 @@ fn planet_image() {
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
-    use orogen::input::import::{ImportOptions, import_evemu, import_libinput};
+    use orogen::input::import::{ImportOptions, import_evemu, import_hid_recorder, import_libinput};
     use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
@@ -89,6 +94,9 @@ fn seeds_are_read() {
         let imported = import_evemu(fs::File::open(path).unwrap(), name, &options).unwrap();
         assert!(imported.frames.len() >= 3, "{name}");
     }
+    let path = seeds.join("hid_recorder_import/two_fingers.hid");
+    let imported = import_hid_recorder(fs::File::open(path).unwrap(), "hid", &options).unwrap();
+    assert!(imported.frames.len() >= 3);
     let path = seeds.join("libinput_import/two_devices.yml");
     let imported = import_libinput(fs::File::open(path).unwrap(), "yml", &options).unwrap();
     assert!(imported.frames.len() >= 3);

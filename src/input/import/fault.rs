@@ -7,6 +7,7 @@ use super::lines::{MAX_LINE_BYTES, MAX_LINES};
 use crate::gesture::contact::MAX_COORDINATE_MM;
 use crate::gesture::file::MAX_TIME_MS;
 use crate::gesture::json::Expected;
+use crate::input::hid::DescriptorError;
 
 /// Why a recording was refused.
 #[derive(Debug, thiserror::Error)]
@@ -36,6 +37,9 @@ pub enum ImportFault {
     /// The recording is not built as it should be.
     #[error("expected {0}, found something else")]
     Form(String),
+    /// A report descriptor that is none.
+    #[error("R: {0}")]
+    Descriptor(#[from] DescriptorError),
     /// No device of the recording is a touchscreen.
     #[error("expected a touchscreen among the devices, found {found}")]
     NoTouchscreen {

@@ -3,6 +3,7 @@
 //! | tool | module | what it holds |
 //! |---|---|---|
 //! | `evemu-record` | [`evemu`] | the kernel's events, protocols A and B |
+//! | `hid-recorder` | [`hid_recorder`] | the bytes that devices sent |
 //! | `libinput record` | [`libinput`] | the same, in YAML, of several devices |
 //!
 //! [`import_recording`] finds out which tool wrote a recording; nothing else does, names of files least of all. Every
@@ -13,6 +14,7 @@ mod devices;
 mod evdev;
 pub mod evemu;
 mod fault;
+pub mod hid_recorder;
 pub mod libinput;
 mod lines;
 mod time;
@@ -28,6 +30,7 @@ use crate::gesture::json::Expected;
 pub use detect::Recorder;
 pub use evemu::import_evemu;
 pub use fault::{ImportError, ImportFault};
+pub use hid_recorder::import_hid_recorder;
 pub use libinput::import_libinput;
 pub use lines::{MAX_LINE_BYTES, MAX_LINES};
 
@@ -96,6 +99,7 @@ pub fn import_recording<R: Read>(
     let whole = head.chain(source);
     match recorder {
         Recorder::Evemu => import_evemu(whole, name, options),
+        Recorder::HidRecorder => import_hid_recorder(whole, name, options),
         Recorder::Libinput => import_libinput(whole, name, options),
     }
 }
