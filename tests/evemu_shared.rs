@@ -8,6 +8,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
+use orogen::export::evemu::write_evemu;
 use orogen::gesture::contact::{InputFrame, Phase};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
@@ -58,7 +59,7 @@ fn most_down(frames: &[InputFrame]) -> usize {
     most
 }
 
-/// Writes the recording as a gesture file and reads it back; plays it on a table of its size.
+/// Writes the recording as a gesture file and reads it back, exports and imports it; plays it on a table of its size.
 fn round_trip_and_play(imported: Imported) -> HandTracker {
     let file = GestureFile {
         header: Header::new(imported.size_mm),
@@ -70,6 +71,12 @@ fn round_trip_and_play(imported: Imported) -> HandTracker {
         read_gesture(&bytes[..], "written").expect("what was written"),
         file
     );
+
+    let mut exported = Vec::new();
+    let left_out = write_evemu(&mut exported, &imported.title, imported.size_mm, &file.frames);
+    assert_eq!(left_out.expect("memory takes all"), Vec::<String>::new());
+    let again = import_evemu(&exported[..], "exported", &ImportOptions::default()).expect("a recording");
+    assert_eq!((again.frames, again.title), (file.frames.clone(), imported.title));
 
     let mut hands = HandTracker::new(GestureParams::default(), imported.size_mm);
     let mut frames = file.frames.iter().peekable();

@@ -51,7 +51,7 @@ pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
         frames: imported.frames,
         warnings: Vec::new(),
     };
-    let (folder, target) = split(&args.out)?;
+    let (folder, target) = folder_and_name(&args.out)?;
     OutDir::create(folder)
         .and_then(|out| out.write(&target, |w| gestures.write(w).map(drop)))
         .map_err(Failure::input)?;
@@ -60,7 +60,7 @@ pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
 }
 
 /// Folder and name of a file that is to be written.
-fn split(path: &Path) -> Result<(&Path, String), Failure> {
+pub(super) fn folder_and_name(path: &Path) -> Result<(&Path, String), Failure> {
     let name = path
         .file_name()
         .ok_or_else(|| Failure::input(format!("--out {}: expected a file name", path.display())))?;

@@ -3,6 +3,7 @@
 mod bench;
 mod console;
 mod erode;
+mod export_evemu;
 mod failure;
 mod globe;
 mod import;
@@ -60,6 +61,8 @@ enum Command {
     Erode(ErodeArgs),
     /// Turn a recording of another tool into a gesture file.
     Import(ImportArgs),
+    /// Turn a gesture file into an evemu recording, which evemu-play and others play on Linux.
+    ExportEvemu(ExportEvemuArgs),
     /// Is this machine fast enough? Every stage at the sizes of the literature.
     Bench(BenchArgs),
 }
@@ -309,6 +312,15 @@ struct ImportArgs {
 }
 
 #[derive(Debug, Args)]
+struct ExportEvemuArgs {
+    /// The gesture file.
+    file: PathBuf,
+    /// The recording to write.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Debug, Args)]
 struct BenchArgs {
     /// JSON lines instead of a table.
     #[arg(long)]
@@ -340,6 +352,7 @@ pub fn main() -> ExitCode {
         Some(Command::Planet(args)) => globe::run(&args, console),
         Some(Command::Erode(args)) => erode::run(&args, console),
         Some(Command::Import(args)) => import::run(&args),
+        Some(Command::ExportEvemu(args)) => export_evemu::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
     };
     match done {

@@ -1,5 +1,6 @@
 //! What comes from outside: maps, whole planets as images, piles of rock, recordings of other tools that become contacts, and the touches of a window.
 
+pub(crate) mod evdev_codes;
 pub mod hid;
 pub mod import;
 pub mod maps;

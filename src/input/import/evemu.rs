@@ -174,7 +174,7 @@ fn decimal(field: &str, text: &str) -> Result<i32, Expected> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::import::evdev::codes::{ABS_MT_POSITION_X, ABS_MT_TRACKING_ID, EV_ABS};
+    use crate::input::evdev_codes::{ABS_MT_POSITION_X, ABS_MT_TRACKING_ID, EV_ABS};
 
     #[test]
     fn events_have_hexadecimal_codes_and_padded_decimal_values() {

@@ -31,18 +31,17 @@ use saphyr_parser::{BufferedInput, Event as Node, Parser, ScalarStyle};
 use serde_json::Value;
 
 use super::devices::{Candidate, choose};
-use super::evdev::codes::{ABS_MT_POSITION_X, ABS_MT_POSITION_Y};
+
 use super::evdev::{Axis, Event, Recording};
 use super::lines::Lines;
 use super::{ImportError, ImportFault, ImportOptions, Imported};
 use crate::gesture::json::Expected;
+use crate::input::evdev_codes::{
+    ABS_MT_POSITION_X, ABS_MT_POSITION_Y, INPUT_PROP_DIRECT, INPUT_PROP_POINTER,
+};
 
 /// Deepest nesting that is followed: what the tool writes has six levels.
 const MAX_DEPTH: usize = 32;
-
-// Linux kernel, include/uapi/linux/input-event-codes.h.
-const INPUT_PROP_POINTER: i64 = 0;
-const INPUT_PROP_DIRECT: i64 = 1;
 
 /// Reads a recording; `name` stands for it in errors, and in the title where the device has no name. `options` win
 /// over what the recording says about itself.
@@ -392,9 +391,9 @@ impl<'a, R: Read> Yaml<'a, R> {
                 Ok(())
             }),
             "properties" => yaml.list(&value, "a list of properties", |_, item| {
-                match number(&item, "a list of properties")? {
-                    INPUT_PROP_POINTER => _ = device.marks.insert(Mark::Pointer),
-                    INPUT_PROP_DIRECT => _ = device.marks.insert(Mark::Direct),
+                match u16::try_from(number(&item, "a list of properties")?) {
+                    Ok(INPUT_PROP_POINTER) => _ = device.marks.insert(Mark::Pointer),
+                    Ok(INPUT_PROP_DIRECT) => _ = device.marks.insert(Mark::Direct),
                     _ => {}
                 }
                 Ok(())

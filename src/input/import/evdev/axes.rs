@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use serde_json::Value;
 
-use super::codes::{
+use crate::input::evdev_codes::{
     ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_SLOT, ABS_MT_TOUCH_MAJOR,
     ABS_MT_WIDTH_MAJOR, EV_ABS,
 };

@@ -9,7 +9,6 @@
 //! contact and takes `BTN_TOUCH` away lifts them all.
 
 mod axes;
-pub(super) mod codes;
 mod slots;
 mod touch;
 mod unslotted;
@@ -25,12 +24,23 @@ use crate::gesture::contact::{
     quantise_mm,
 };
 use crate::gesture::json::Expected;
+use crate::input::evdev_codes as codes;
 pub(super) use axes::Axis;
 use axes::{Axes, Plane};
-pub(super) use codes::Event;
 use slots::Slots;
 use touch::{RawEvent, Readings, Touch};
 use unslotted::{MAX_PACKETS, Packet, Unslotted};
+
+/// An event of the kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Event {
+    /// Time, µs since some epoch.
+    pub(super) t_us: u64,
+    /// `EV_…`
+    pub(super) kind: u16,
+    pub(super) code: u16,
+    pub(super) value: i32,
+}
 
 /// How contacts are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

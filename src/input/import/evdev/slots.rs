@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::codes::ABS_MT_TRACKING_ID;
 use super::touch::{RawEvent, Readings, Touch};
 use crate::gesture::contact::Phase;
+use crate::input::evdev_codes::ABS_MT_TRACKING_ID;
 
 /// Who is in a slot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,8 +27,8 @@ struct Slot {
     readings: Readings,
     /// The contact that is down after the last frame.
     shown: Option<Touch>,
-    /// True if that one lifted since.
-    lifted: bool,
+    /// How that one ended since.
+    ended: Option<Phase>,
     /// How often a contact went down here.
     downs: u32,
 }
@@ -73,10 +73,13 @@ impl Slots {
         };
         let before = std::mem::replace(&mut slot.tracking, now);
         if before != now && matches!(before, Tracking::Named(_) | Tracking::Unnamed) {
-            if slot.shown.is_some() && !slot.lifted {
-                slot.lifted = true;
-            } else {
-                self.unplaced += 1;
+            match slot.shown {
+                Some(shown) if slot.ended.is_none() => {
+                    // What turns out to be a palm as it lifts is withdrawn (as libinput takes it).
+                    let withdrawn = slot.readings.touch().is_some_and(|touch| touch.palm) && !shown.palm;
+                    slot.ended = Some(if withdrawn { Phase::Cancel } else { Phase::Up });
+                }
+                _ => self.unplaced += 1,
             }
         }
     }
@@ -94,10 +97,10 @@ impl Slots {
                     touch,
                 });
             };
-            if std::mem::take(&mut slot.lifted)
+            if let Some(phase) = slot.ended.take()
                 && let Some(touch) = slot.shown.take()
             {
-                say(Phase::Up, slot.downs, touch);
+                say(phase, slot.downs, touch);
             }
             let Some(touch) = slot.readings.touch() else {
                 continue;

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::codes::{
+use crate::gesture::contact::Phase;
+use crate::input::evdev_codes::{
     ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_TOOL_TYPE, ABS_MT_TOUCH_MAJOR,
     ABS_MT_TOUCH_MINOR, ABS_MT_TRACKING_ID, ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR, MT_TOOL_PALM,
 };
-use crate::gesture::contact::Phase;
 
 /// A contact in device units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

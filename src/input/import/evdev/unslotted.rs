@@ -8,9 +8,9 @@
 use glam::DVec2;
 
 use super::axes::Plane;
-use super::codes::ABS_MT_TRACKING_ID;
 use super::touch::{RawEvent, Readings, Touch};
 use crate::gesture::contact::Phase;
+use crate::input::evdev_codes::ABS_MT_TRACKING_ID;
 
 /// Most contacts of a frame: as many as the largest tables report, and few enough for a cubic method.
 pub(super) const MAX_PACKETS: usize = 64;
