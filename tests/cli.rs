@@ -253,6 +253,7 @@ fn bad_usage_is_one_line() {
     refused(&["erode", "--uplift", "5"], &["--uplift", "5"]);
     refused(&["erode", "--uplift", "1e-3", "--n", "0"], &["--n"]);
     refused(&["import", "x"], &["--out"]);
+    refused(&["export-evemu", "x"], &["--out"]);
 }
 
 #[test]
@@ -430,6 +431,28 @@ fn import_writes_a_gesture_file_that_replays() {
     );
     let report = fs::read_to_string(dir.path().join("out/two/report.json")).expect("report");
     assert!(report.contains("\"pushes\": 1"), "{report}");
+
+    // And back again: the same recording, whatever its units were.
+    let exported = dir.path().join("again.events");
+    let output = orogen(&["export-evemu", &text(&target), "--out", &text(&exported)]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let again = dir.path().join("again.gesture.jsonl");
+    let output = orogen(&["import", &text(&exported), "--out", &text(&again)]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let read = |path: &Path| fs::read_to_string(path).expect("a file");
+    assert_eq!(read(&again), read(&target));
+    refused(
+        &["export-evemu", &text(&exported), "--out", &text(&again)],
+        &["again.events:1:", "expected"],
+    );
 
     let bad = dir.path().join("bad.events");
     fs::write(&bad, "# EVEMU 1.2\nN: x\nE: 0.0 0003 zz 1\n").expect("written");

@@ -35,7 +35,17 @@ fn gesture_reader() {
 
 #[test]
 fn evemu_import() {
-    assert!(replay("evemu_import", checks::evemu_import) >= 2);
+    assert!(replay("evemu_import", checks::evemu_import) >= 3);
+}
+
+#[test]
+fn hid_recorder_import() {
+    assert!(replay("hid_recorder_import", checks::hid_recorder_import) >= 1);
+}
+
+#[test]
+fn libinput_import() {
+    assert!(replay("libinput_import", checks::libinput_import) >= 1);
 }
 
 #[test]
@@ -67,8 +77,8 @@ fn hid_report() {
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
-    use orogen::input::evemu::{EvemuOptions, import_evemu};
     use orogen::input::hid::Descriptor;
+    use orogen::input::import::{ImportOptions, import_evemu, import_hid_recorder, import_libinput};
     use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
@@ -92,13 +102,19 @@ fn seeds_are_read() {
         let bytes = fs::read(seeds.join(format!("hid_descriptor/{name}.bin"))).unwrap();
         assert!(Descriptor::parse(&bytes).unwrap().touch.is_ok(), "{name}");
     }
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: None,
         size_mm: Some([100.0, 60.0].into()),
     };
-    for name in ["two_fingers", "mid_touch"] {
+    for name in ["two_fingers", "mid_touch", "packets"] {
         let path = seeds.join(format!("evemu_import/{name}.events"));
         let imported = import_evemu(fs::File::open(path).unwrap(), name, &options).unwrap();
         assert!(imported.frames.len() >= 3, "{name}");
     }
+    let path = seeds.join("hid_recorder_import/two_fingers.hid");
+    let imported = import_hid_recorder(fs::File::open(path).unwrap(), "hid", &options).unwrap();
+    assert!(imported.frames.len() >= 3);
+    let path = seeds.join("libinput_import/two_devices.yml");
+    let imported = import_libinput(fs::File::open(path).unwrap(), "yml", &options).unwrap();
+    assert!(imported.frames.len() >= 3);
 }

@@ -274,6 +274,66 @@ fn two_quick_taps_are_two_taps() {
     assert_eq!(table.words(), ["tap 0", "tap 1"]);
 }
 
+/// A contact that is down for `on_ms` and away for `off_ms`, again and again, around one place.
+fn flickering(on_ms: f64, off_ms: f64, wander_mm: f64) -> Table {
+    let mut table = Table::default();
+    for i in 0..12_u32 {
+        let (from, id) = (f64::from(i) * (on_ms + off_ms), u64::from(i));
+        let x = 300.0 + wander_mm * f64::from(i % 2);
+        table.down(from, id, x, 200.0).up(from + on_ms, id);
+    }
+    table.until(3_000.0);
+    table
+}
+
+#[test]
+fn what_flickers_around_one_place_is_a_palm() {
+    let table = flickering(60.0, 30.0, 8.0);
+    assert_eq!(table.words(), ["tap 0", "tap 1", "tap 2"]);
+    assert_eq!(table.tracker.stats().dropped_ghosts, 9);
+    // As fast as a finger can drum, with another way to be slow: long gaps, long contacts, or places apart.
+    for (on_ms, off_ms, wander_mm) in [(60.0, 66.0, 1.0), (260.0, 30.0, 1.0), (60.0, 30.0, 12.0)] {
+        let table = flickering(on_ms, off_ms, wander_mm);
+        assert_eq!(
+            table.tracker.stats().dropped_ghosts,
+            0,
+            "{on_ms} {off_ms} {wander_mm}"
+        );
+    }
+}
+
+#[test]
+fn where_a_palm_flickered_a_finger_can_land_a_moment_later() {
+    let mut table = flickering(60.0, 30.0, 2.0);
+    let before = table.words().len();
+    // The last one lifted at 1050 ms.
+    table
+        .down(3_100.0, 50, 301.0, 200.0)
+        .up(3_200.0, 50)
+        .until(3_300.0);
+    assert_eq!(table.words().len(), before + 1);
+    let mut table = Table::default();
+    for i in 0..6_u32 {
+        let from = f64::from(i) * 90.0;
+        table
+            .down(from, u64::from(i), 300.0, 200.0)
+            .up(from + 60.0, u64::from(i));
+    }
+    // Long after the last tap, but the palm was there all the time.
+    table
+        .down(530.0, 10, 303.0, 200.0)
+        .up(900.0, 10)
+        .down(930.0, 11, 301.0, 200.0)
+        .up(960.0, 11);
+    table.down(960.0, 12, 900.0, 400.0).up(1_100.0, 12).until(1_400.0);
+    assert_eq!(
+        table.words(),
+        ["tap 0", "tap 1", "tap 2", "tap 3"],
+        "the fourth is elsewhere"
+    );
+    assert_eq!(table.tracker.stats().dropped_ghosts, 5);
+}
+
 #[test]
 fn a_flickering_contact_is_taken_back_whole() {
     let mut table = Table::default();

@@ -154,12 +154,16 @@ const RULES: &[Rule] = &[
     Rule {
         module: "export",
         forbidden: &[
-            "crate::gesture",
+            "crate::gesture::command",
+            "crate::gesture::event",
+            "crate::gesture::file",
+            "crate::gesture::hand",
+            "crate::gesture::stroke",
             "crate::mountain",
             "crate::sim",
             "crate::picture",
         ],
-        reason: "files are made of plain data",
+        reason: "files are made of plain data, contacts among them",
     },
     Rule {
         module: "input",

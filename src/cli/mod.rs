@@ -4,6 +4,7 @@ mod bench;
 mod console;
 mod devices;
 mod erode;
+mod export_evemu;
 mod failure;
 mod globe;
 mod import;
@@ -59,10 +60,12 @@ enum Command {
     Planet(PlanetArgs),
     /// Erode a terrain in batch: uplift in, eroded land out.
     Erode(ErodeArgs),
-    /// Turn a recording of another tool (evemu, multi-touch protocol B) into a gesture file.
+    /// Turn a recording of another tool into a gesture file.
     Import(ImportArgs),
     /// The touch devices that are plugged in, or what a HID report descriptor means.
     Devices(DevicesArgs),
+    /// Turn a gesture file into an evemu recording, which evemu-play and others play on Linux.
+    ExportEvemu(ExportEvemuArgs),
     /// Is this machine fast enough? Every stage at the sizes of the literature.
     Bench(BenchArgs),
 }
@@ -325,6 +328,15 @@ struct DevicesArgs {
 }
 
 #[derive(Debug, Args)]
+struct ExportEvemuArgs {
+    /// The gesture file.
+    file: PathBuf,
+    /// The recording to write.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+#[derive(Debug, Args)]
 struct BenchArgs {
     /// JSON lines instead of a table.
     #[arg(long)]
@@ -357,6 +369,7 @@ pub fn main() -> ExitCode {
         Some(Command::Erode(args)) => erode::run(&args, console),
         Some(Command::Import(args)) => import::run(&args),
         Some(Command::Devices(args)) => devices::run(&args, console),
+        Some(Command::ExportEvemu(args)) => export_evemu::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
     };
     match done {

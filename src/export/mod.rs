@@ -5,6 +5,7 @@
 //! origin in the south-west corner; [`glb`] turns it for glTF.
 
 mod digest;
+pub mod evemu;
 pub mod exr;
 pub mod geojson;
 pub mod glb;

@@ -14,6 +14,7 @@ pub mod command;
 pub mod contact;
 pub mod event;
 pub mod file;
+mod flicker;
 mod grouping;
 pub mod hand;
 pub mod json;

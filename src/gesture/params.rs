@@ -56,6 +56,9 @@ pub struct GestureParams {
     pub ghost_mm: f64,
     /// … while its size changed by more than this, is a ghost and no tap, mm.
     pub ghost_resize_mm: f64,
+    /// So many contacts that follow each other so soon and near (`bridge_ms`, `bridge_mm`) within `rest_ms`, none of them more than a tap, are a palm.
+    /// Smaller: a screen that bounces loses taps; larger: a palm without size taps for longer.
+    pub palm_flickers: f64,
     /// A contact that reports the very same coordinates for longer than this while others move is stuck, ms.
     pub stuck_ms: f64,
 }
@@ -80,6 +83,7 @@ impl Default for GestureParams {
             ghost_ms: 60.0,
             ghost_mm: 2.0,
             ghost_resize_mm: 2.0,
+            palm_flickers: 3.0,
             stuck_ms: 20_000.0,
         }
     }
@@ -141,7 +145,7 @@ macro_rules! bound {
 
 impl GestureParams {
     /// Unit and range of every parameter, in the order of the fields.
-    pub const BOUNDS: [Bound; 18] = [
+    pub const BOUNDS: [Bound; 19] = [
         bound!(hand_box_mm, "mm", 80.0, 400.0),
         bound!(join_ms, "ms", 0.0, 1000.0),
         bound!(late_reach_mm, "mm", 0.0, 400.0),
@@ -159,6 +163,7 @@ impl GestureParams {
         bound!(ghost_ms, "ms", 0.0, 200.0),
         bound!(ghost_mm, "mm", 0.0, 10.0),
         bound!(ghost_resize_mm, "mm", 0.0, 50.0),
+        bound!(palm_flickers, "1", 1.0, 10.0),
         bound!(stuck_ms, "ms", 1000.0, 600_000.0),
     ];
 
@@ -204,7 +209,7 @@ mod tests {
         assert_eq!(params.validate(), Ok(()));
         let values: Vec<f64> = GestureParams::BOUNDS.iter().map(|b| (b.get)(&params)).collect();
         assert_eq!(values[0], params.hand_box_mm);
-        assert_eq!(values[17], params.stuck_ms);
+        assert_eq!(values[18], params.stuck_ms);
     }
 
     #[test]

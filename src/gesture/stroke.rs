@@ -3,7 +3,7 @@
 //! The first guess is made at once and revised for a while (Schwarz et al. 2014, "Probabilistic palm rejection using
 //! spatiotemporal touch features and iterative classification"): a contact with confidence 0 or larger than a
 //! fingertip never starts a stroke, and one that turns out to be such within the revision time is taken back with
-//! all it did.
+//! all it did. Where a device tells neither, contacts that flicker around one place are a palm.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,6 +11,7 @@ use glam::DVec2;
 
 use super::admission::Admission;
 use super::contact::{Contact, ContactEvent, ContactKey, Phase};
+use super::flicker::Spots;
 use super::params::{GestureParams, micros};
 
 /// Names a stroke for the whole session.
@@ -103,6 +104,7 @@ pub struct StrokeTracker {
     roles: BTreeMap<ContactKey, Role>,
     strokes: BTreeMap<StrokeId, Stroke>,
     banned: BTreeSet<ContactKey>,
+    spots: Spots,
     next: u32,
     /// When any contact last moved, µs.
     moved_us: u64,
@@ -118,6 +120,7 @@ impl StrokeTracker {
             roles: BTreeMap::new(),
             strokes: BTreeMap::new(),
             banned: BTreeSet::new(),
+            spots: Spots::default(),
             next: 0,
             moved_us: 0,
             stats: StrokeStats::default(),
@@ -230,7 +233,8 @@ impl StrokeTracker {
     }
 
     fn down(&mut self, t_us: u64, contact: &Contact, out: &mut Vec<StrokeEvent>) {
-        if self.banned.contains(&contact.key) || self.is_palm(contact) {
+        let flickers = self.spots.is_palm(&self.params, t_us, contact.position);
+        if self.banned.contains(&contact.key) || self.is_palm(contact) || flickers {
             self.stats.dropped_ghosts += 1;
             self.roles.insert(contact.key, Role::Ghost);
             return;
@@ -297,6 +301,7 @@ impl StrokeTracker {
 
     fn up(&mut self, t_us: u64, contact: &Contact, out: &mut Vec<StrokeEvent>) {
         let Some(Role::Finger(id)) = self.roles.remove(&contact.key) else {
+            self.spots.keep(&self.params, t_us, contact.position);
             return;
         };
         let Some(stroke) = self.strokes.get_mut(&id) else {
@@ -310,7 +315,8 @@ impl StrokeTracker {
         if resized && age < micros(params.ghost_ms) && stroke.travel < params.ghost_mm {
             self.drop_stroke(id, out);
         } else if stroke.travel < params.motion_mm && age < micros(params.rest_ms) {
-            // Two quick taps are two taps.
+            // Two quick taps are two taps; many too quick ones are a palm.
+            self.spots.lift(params, t_us, contact.position);
             self.end(id, t_us, out);
         } else {
             stroke.lifted_us = Some(t_us);
