@@ -5,4 +5,5 @@ pub mod maps;
 pub mod pile;
 pub mod planet;
 pub mod touching;
+pub mod tuio;
 pub mod window;
