@@ -149,6 +149,8 @@ pub struct Table {
     pub events: Vec<ContactEvent>,
     /// States so far.
     pub states: usize,
+    /// Senders found so far.
+    pub found: usize,
     /// Senders lost so far.
     pub lost: usize,
     /// The last state.
@@ -167,6 +169,7 @@ impl Default for Table {
             trackers: (0..MAX_SOURCES as u16).map(tracker).collect(),
             events: Vec::new(),
             states: 0,
+            found: 0,
             lost: 0,
             last: Vec::new(),
         }
@@ -195,10 +198,16 @@ impl Table {
             trackers,
             events,
             states,
+            found,
             lost,
             last,
         } = self;
         act(decoder, &mut |event| match event {
+            TuioEvent::Found { source, .. } => {
+                let down = trackers[usize::from(source)].contacts().count();
+                assert_eq!(down, 0, "nothing is down of who was just found");
+                *found += 1;
+            }
             TuioEvent::State { source, touching } => {
                 trackers[usize::from(source)].frame(touching, events);
                 *states += 1;

@@ -2,8 +2,6 @@
 //!
 //! The number of a frame may stand behind everything else, so nothing is believed before the bundle ends.
 
-use glam::DVec2;
-
 use super::contacts::Reading;
 use super::osc::{Argument, Message};
 use super::{TuioCounts, v1, v2};
@@ -158,9 +156,4 @@ pub(super) fn number(argument: Argument<'_>) -> Option<f64> {
         Argument::Float(number) => Some(number),
         _ => None,
     }
-}
-
-/// Width and height, where they are some.
-pub(super) fn size(parts: DVec2) -> Option<DVec2> {
-    Some(parts).filter(|parts| parts.is_finite() && parts.min_element() >= 0.0 && *parts != DVec2::ZERO)
 }

@@ -4,6 +4,26 @@ use glam::DVec2;
 
 use crate::gesture::contact::MAX_CONTACTS;
 
+/// How large a contact is, in parts of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Extent {
+    /// Width and height, each in parts of its side.
+    Sides(DVec2),
+    /// A circle; of which side it is a part nobody says. The shorter one is the careful guess.
+    Diameter(f64),
+}
+
+impl Extent {
+    /// Width and height on a surface of this size; nothing where they are none.
+    pub(super) fn on(self, surface: DVec2) -> Option<DVec2> {
+        let size = match self {
+            Self::Sides(sides) => sides * surface,
+            Self::Diameter(part) => DVec2::splat(part * surface.min_element()),
+        };
+        Some(size).filter(|size| size.is_finite() && size.min_element() >= 0.0 && *size != DVec2::ZERO)
+    }
+}
+
 /// What one message says about a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reading {
@@ -11,8 +31,8 @@ pub(super) struct Reading {
     pub(super) id: u32,
     /// Where, in parts of the surface.
     pub(super) at: DVec2,
-    /// Width and height in parts of the surface, where it tells.
-    pub(super) size: Option<DVec2>,
+    /// How large, where it tells.
+    pub(super) extent: Option<Extent>,
     /// True for an outline, which knows the size better and the place worse than a pointer of the same id.
     pub(super) outline: bool,
     /// False for a pointer that hovers.
@@ -44,14 +64,14 @@ impl Known {
         if let Some(before) = self.placed {
             if reading.outline && !before.outline {
                 now = Reading {
-                    size: reading.size.or(before.size),
+                    extent: reading.extent.or(before.extent),
                     ..before
                 };
             } else if self.outlined && !reading.outline {
-                now.size = before.size;
+                now.extent = before.extent;
             }
         }
-        self.outlined |= reading.outline && reading.size.is_some();
+        self.outlined |= reading.outline && reading.extent.is_some();
         let changed = self.placed != Some(now);
         self.placed = Some(now);
         changed

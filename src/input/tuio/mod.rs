@@ -69,12 +69,21 @@ pub struct TuioOptions {
     pub surface_mm: Option<DVec2>,
 }
 
-/// What a sender says.
+/// What a sender says: it is found, then tells states, then may be lost, and may be found again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TuioEvent<'a> {
+    /// A sender is heard, for the first time or again; nothing of it is down. Its first state follows.
+    Found {
+        /// Which sender, below [`MAX_SOURCES`]; a number is given again once its sender was lost.
+        source: u16,
+        /// Its name for itself; empty where it gives none.
+        name: &'a str,
+        /// From where its packets come.
+        peer: SocketAddr,
+    },
     /// All that touches at the end of a frame.
     State {
-        /// Which sender, below [`MAX_SOURCES`]; a number is given again once its sender was lost.
+        /// Which sender.
         source: u16,
         /// The contacts.
         touching: &'a [Touching],
@@ -239,7 +248,7 @@ impl TuioDecoder {
             } else if source.is_silent(t_us) {
                 self.sources[i].silenced = true;
                 self.counts.silenced += 1;
-                sink(TuioEvent::Lost { source: i as u16 });
+                self.lose(i, sink);
             }
         }
     }
@@ -269,7 +278,13 @@ impl TuioDecoder {
     fn forget(&mut self, i: usize, sink: &mut impl FnMut(TuioEvent<'_>)) {
         self.sources[i].used = false;
         self.counts.forgotten += 1;
-        sink(TuioEvent::Lost { source: i as u16 });
+        self.lose(i, sink);
+    }
+
+    fn lose(&mut self, i: usize, sink: &mut impl FnMut(TuioEvent<'_>)) {
+        if std::mem::take(&mut self.sources[i].found) {
+            sink(TuioEvent::Lost { source: i as u16 });
+        }
     }
 
     fn end_of_bundle(&mut self, t_us: u64, peer: SocketAddr, sink: &mut impl FnMut(TuioEvent<'_>)) {
@@ -285,19 +300,31 @@ impl TuioDecoder {
             return;
         };
         let taken = self.sources[i].take(t_us, &self.bundle, &mut self.counts);
-        let source = i as u16;
         if matches!(taken, Taken::Restart(_)) {
             self.counts.restarts += 1;
-            sink(TuioEvent::Lost { source });
+            self.lose(i, sink);
         }
         if matches!(taken, Taken::Frame | Taken::Restart(true)) {
             self.counts.frames += 1;
-            self.sources[i].state(self.options.surface_mm, &mut self.state);
-            sink(TuioEvent::State {
+            self.tell(i, sink);
+        }
+    }
+
+    fn tell(&mut self, i: usize, sink: &mut impl FnMut(TuioEvent<'_>)) {
+        let sender = &mut self.sources[i];
+        let source = i as u16;
+        if !std::mem::replace(&mut sender.found, true) {
+            sink(TuioEvent::Found {
                 source,
-                touching: &self.state,
+                name: &String::from_utf8_lossy(&sender.name),
+                peer: sender.peer,
             });
         }
+        sender.state(self.options.surface_mm, &mut self.state);
+        sink(TuioEvent::State {
+            source,
+            touching: &self.state,
+        });
     }
 
     /// The sender of the bundle at hand, who may be a new one.

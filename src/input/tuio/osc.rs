@@ -164,3 +164,138 @@ fn take_text<'a>(data: &mut &'a [u8]) -> Option<&'a [u8]> {
     *data = data.get((length + 1).next_multiple_of(4)..)?;
     Some(text)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
+
+    fn argument() -> impl Strategy<Value = OscType> {
+        let leaf = prop_oneof![
+            any::<i32>().prop_map(OscType::Int),
+            any::<i64>().prop_map(OscType::Long),
+            any::<f32>().prop_map(OscType::Float),
+            any::<f64>().prop_map(OscType::Double),
+            "[a-z@:.]{0,9}".prop_map(OscType::String),
+            prop::collection::vec(any::<u8>(), 0..9).prop_map(OscType::Blob),
+            Just(OscType::Char('x')),
+            Just(OscType::Bool(true)),
+            Just(OscType::Bool(false)),
+            Just(OscType::Nil),
+            Just(OscType::Inf),
+            any::<(u32, u32)>().prop_map(|time| OscType::Time(time.into())),
+        ];
+        leaf.prop_recursive(2, 8, 4, |inner| {
+            prop::collection::vec(inner, 0..4).prop_map(|content| OscType::Array(rosc::OscArray { content }))
+        })
+    }
+
+    fn packet() -> impl Strategy<Value = OscPacket> {
+        let args = prop::collection::vec(argument(), 0..9);
+        let message = ("/[a-zA-Z0-9/]{0,12}", args)
+            .prop_map(|(addr, args)| OscPacket::Message(OscMessage { addr, args }));
+        message.prop_recursive(MAX_DEPTH as u32, 24, 6, |inner| {
+            prop::collection::vec(inner, 0..6).prop_map(|content| {
+                let timetag = OscTime::from((0, 1));
+                OscPacket::Bundle(OscBundle { timetag, content })
+            })
+        })
+    }
+
+    /// What [`read`] shows of a packet, one line each.
+    fn lines(bytes: &[u8]) -> (Vec<String>, Result<(), Malformed>) {
+        let mut lines = Vec::new();
+        let outcome = read(bytes, &mut |element| match element {
+            Element::Message(message) => {
+                let arguments: Vec<_> = message.arguments().collect();
+                lines.push(format!("{:?} {arguments:?}", message.address));
+            }
+            Element::EndOfBundle => lines.push("end".to_owned()),
+        });
+        (lines, outcome)
+    }
+
+    /// The same of what `rosc` reads.
+    fn expected(packet: &OscPacket, lines: &mut Vec<String>) {
+        fn push<'a>(args: &'a [OscType], out: &mut Vec<Argument<'a>>) {
+            for arg in args {
+                match arg {
+                    OscType::Int(v) => out.push(Argument::Int((*v).into())),
+                    OscType::Long(v) => out.push(Argument::Int(*v)),
+                    OscType::Float(v) => out.push(Argument::Float((*v).into())),
+                    OscType::Double(v) => out.push(Argument::Float(*v)),
+                    OscType::String(text) => out.push(Argument::Text(text.as_bytes())),
+                    OscType::Array(array) => push(&array.content, out),
+                    _ => out.push(Argument::Other),
+                }
+            }
+        }
+        match packet {
+            OscPacket::Message(message) => {
+                let mut arguments = Vec::new();
+                push(&message.args, &mut arguments);
+                lines.push(format!("{:?} {arguments:?}", message.addr.as_bytes()));
+            }
+            OscPacket::Bundle(bundle) => {
+                bundle.content.iter().for_each(|inner| expected(inner, lines));
+                lines.push("end".to_owned());
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_rosc_writes_is_read_as_rosc_reads_it(packet in packet()) {
+            let bytes = encoder::encode(&packet).expect("a packet");
+            let (_, again) = rosc::decoder::decode_udp(&bytes).expect("what was written");
+            let mut wanted = Vec::new();
+            expected(&again, &mut wanted);
+            prop_assert_eq!(lines(&bytes), (wanted, Ok(())));
+        }
+
+        #[test]
+        fn what_stands_before_a_tear_is_read(packet in packet(), keep in 0.0..1.0) {
+            let bytes = encoder::encode(&packet).expect("a packet");
+            let torn = &bytes[..(bytes.len() as f64 * keep) as usize];
+            let (whole, _) = lines(&bytes);
+            let (part, _) = lines(torn);
+            let messages = part.iter().filter(|line| *line != "end").count();
+            prop_assert!(messages <= whole.iter().filter(|line| *line != "end").count());
+        }
+
+        #[test]
+        fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            for head in [&b""[..], b"#bundle\0\0\0\0\0\0\0\0\x01", b"/tuio/2Dcur\0"] {
+                let (lines, _) = lines(&[head, &bytes].concat());
+                prop_assert!(lines.len() <= head.len() + bytes.len());
+            }
+        }
+    }
+
+    /// Bundles in bundles, as deep as a datagram has room for.
+    #[test]
+    fn depth_is_bounded() {
+        let nested = |depth: usize| {
+            let mut bytes = b"/a\0\0,\0\0\0".to_vec();
+            for _ in 0..depth {
+                let length = (bytes.len() as u32).to_be_bytes();
+                bytes = [b"#bundle\0\0\0\0\0\0\0\0\x01", &length[..], &bytes].concat();
+            }
+            bytes
+        };
+        assert_eq!(lines(&nested(MAX_DEPTH)).1, Ok(()));
+        assert_eq!(lines(&nested(MAX_DEPTH)).0.len(), MAX_DEPTH + 1);
+        assert_eq!(lines(&nested(MAX_DEPTH + 1)).1, Err(Malformed));
+        assert_eq!(lines(&nested(3000)).1, Err(Malformed));
+    }
+
+    #[test]
+    fn an_array_takes_no_depth() {
+        let mut bytes = b"/a\0\0,".to_vec();
+        bytes.extend([b'['; 30_000]);
+        bytes.extend([b']'; 30_002]);
+        bytes.push(0);
+        assert_eq!(lines(&bytes), (vec!["[47, 97] []".to_owned()], Ok(())));
+    }
+}

@@ -49,6 +49,8 @@ pub(super) struct Source {
     pub(super) bucket: Bucket,
     /// True when its contacts were withdrawn because it was silent.
     pub(super) silenced: bool,
+    /// True from its first state until it is lost.
+    pub(super) found: bool,
     contacts: [Contacts; PROFILES],
     /// Number of the last frame and when it came, by profile; 0 before the first.
     number: [i64; PROFILES],
@@ -71,6 +73,7 @@ impl Source {
             heard_us: t_us,
             bucket: Bucket::new(PACKETS_PER_S, t_us),
             silenced: false,
+            found: false,
             contacts: [Contacts::new(), Contacts::new(), Contacts::new()],
             number: [0; PROFILES],
             numbered_us: [t_us; PROFILES],
@@ -92,6 +95,7 @@ impl Source {
         self.heard_us = t_us;
         self.bucket = Bucket::new(PACKETS_PER_S, t_us);
         self.silenced = false;
+        self.found = false;
         self.habit = Habit::new();
         self.forget_frames();
     }
@@ -258,7 +262,7 @@ impl Source {
     /// Replaces `out` by all that touches.
     pub(super) fn state(&self, surface_mm: Option<DVec2>, out: &mut Vec<Touching>) {
         out.clear();
-        let size_mm = |reading: &Reading| Some(reading.size? * surface_mm?);
+        let size_mm = |reading: &Reading| reading.extent?.on(surface_mm?);
         let touching = |profile: usize, reading: &Reading| Touching {
             id: (profile as u64) << 32 | u64::from(reading.id),
             at: reading.at,
@@ -280,7 +284,8 @@ impl Source {
     fn blobs(&self, out: &mut Vec<Touching>, touching: &impl Fn(usize, &Reading) -> Touching) {
         let cursors = out.len();
         for blob in self.contacts[v1::BLOBS].touching() {
-            let reach = blob.size.map_or(DVec2::ZERO, |size| size / 2.0);
+            let size = blob.extent.and_then(|extent| extent.on(DVec2::ONE));
+            let reach = size.unwrap_or(DVec2::ZERO) / 2.0;
             let within = |cursor: &Touching| (cursor.at - blob.at).abs().cmple(reach).all();
             let mut around = (0..cursors).filter(|&i| within(&out[i]));
             match (around.next(), around.next()) {

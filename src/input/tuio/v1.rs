@@ -4,8 +4,8 @@
 use glam::DVec2;
 
 use super::TuioCounts;
-use super::bundle::{Bundle, number, session_id, size};
-use super::contacts::Reading;
+use super::bundle::{Bundle, number, session_id};
+use super::contacts::{Extent, Reading};
 use super::osc::{Argument, Arguments};
 
 /// Index of the profile of cursors: fingers.
@@ -62,16 +62,16 @@ fn set(profile: usize, mut arguments: Arguments<'_>) -> Option<Reading> {
     }
     let mut next = || number(arguments.next()?);
     let at = DVec2::new(next()?, next()?);
-    let size = if profile == BLOBS {
+    let extent = if profile == BLOBS {
         let _angle = next()?;
-        size(DVec2::new(next()?, next()?))
+        Some(Extent::Sides(DVec2::new(next()?, next()?)))
     } else {
         None
     };
     Some(Reading {
         id,
         at,
-        size,
+        extent,
         outline: false,
         touches: true,
     })

@@ -5,8 +5,8 @@
 use glam::DVec2;
 
 use super::TuioCounts;
-use super::bundle::{Bundle, FrameHead, number, session_id, size};
-use super::contacts::Reading;
+use super::bundle::{Bundle, FrameHead, number, session_id};
+use super::contacts::{Extent, Reading};
 use super::osc::{Argument, Arguments};
 
 /// All kinds share one list of those alive.
@@ -34,16 +34,16 @@ pub(super) fn message(
             let (mut touches, mut extent) = (true, None);
             if kind == b"ptr" {
                 let _shear = next()?;
-                extent = size(DVec2::splat(2.0 * next()?));
+                extent = Some(Extent::Diameter(2.0 * next()?));
                 // Below 0 it is the distance of a pointer that hovers.
                 touches = next()? >= 0.0;
             } else if kind == b"bnd" {
-                extent = size(DVec2::new(next()?, next()?));
+                extent = Some(Extent::Sides(DVec2::new(next()?, next()?)));
             }
             let reading = Reading {
                 id,
                 at,
-                size: extent,
+                extent,
                 outline: kind == b"bnd",
                 touches,
             };
