@@ -30,13 +30,14 @@
 //! | `app` | window, event loop, threads, metrics (feature `app`) | |
 //! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
 //! | [`input`] | recordings of other tools, maps from files | worlds |
+//! | `device` | opens touch devices, each on a thread of its own (feature `app`) | window, worlds |
 //! | [`report`] | the facts of a run | clock, files |
-//! | [`cli`] | the commands; beside `app` the only place with a clock and a terminal | |
+//! | [`cli`] | the commands; beside `app` and `device` the only place with a clock, and the only one with a terminal | |
 //!
 //! # What is absent
 //!
-//! * The core (all but `gpu`, `render`, `ui`, `app` and [`cli`]) never names a window, a graphics card, the clock or
-//!   the environment. The same input gives the same bits, for any number of threads; the one seed is in the world.
+//! * The core (all but `gpu`, `render`, `ui`, `app`, `device` and [`cli`]) never names a window, a graphics card, the clock
+//!   or the environment. The same input gives the same bits, for any number of threads; the one seed is in the world.
 //! * [`gesture`], [`mountain`], [`terrain`], [`isostasy`] and [`sim`] read and write no files.
 //! * Parameters are passed in and never stored in the world, so a snapshot is a clone of plain data.
 //! * The table's y axis points down and is in millimetres; the plan's points north and is in metres. Only [`units`]
@@ -100,6 +101,9 @@ pub mod app;
 pub mod export;
 
 pub mod input;
+
+#[cfg(feature = "app")]
+pub mod device;
 
 pub mod report;
 
