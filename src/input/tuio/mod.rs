@@ -42,7 +42,7 @@ use crate::input::touching::Touching;
 use bundle::Bundle;
 use osc::Element;
 use pace::Bucket;
-use source::{Source, Taken};
+use source::{Source, Standing, Taken};
 
 /// Most senders at once.
 pub const MAX_SOURCES: usize = 16;
@@ -183,7 +183,11 @@ impl TuioDecoder {
 
     /// The senders that are known now.
     pub fn sources(&self) -> impl Iterator<Item = TuioSource> {
-        let used = self.sources.iter().enumerate().filter(|(_, source)| source.used);
+        let used = self
+            .sources
+            .iter()
+            .enumerate()
+            .filter(|(_, source)| source.is_used());
         used.map(|(i, source)| TuioSource {
             source: i as u16,
             peer: source.peer,
@@ -208,7 +212,7 @@ impl TuioDecoder {
         let known = self
             .sources
             .iter_mut()
-            .find(|source| source.used && source.peer == peer);
+            .find(|source| source.is_used() && source.peer == peer);
         let bucket = known.map_or(&mut self.strangers, |source| &mut source.bucket);
         if !bucket.take(t_us, bytes.len()) {
             self.counts.over_rate += 1;
@@ -240,15 +244,14 @@ impl TuioDecoder {
     pub fn tick(&mut self, t_us: u64, sink: &mut impl FnMut(TuioEvent<'_>)) {
         for i in 0..self.sources.len() {
             let source = &self.sources[i];
-            if !source.used {
+            if !source.is_used() {
                 continue;
             }
             if source.is_gone(t_us) || self.is_succeeded(source, t_us) {
                 self.forget(i, sink);
             } else if source.is_silent(t_us) {
-                self.sources[i].silenced = true;
                 self.counts.silenced += 1;
-                self.lose(i, sink);
+                self.lose(i, Standing::Silenced, sink);
             }
         }
     }
@@ -256,7 +259,7 @@ impl TuioDecoder {
     /// Forgets all senders: nobody is listened to any more.
     pub fn forget_all(&mut self, sink: &mut impl FnMut(TuioEvent<'_>)) {
         for i in 0..self.sources.len() {
-            if self.sources[i].used {
+            if self.sources[i].is_used() {
                 self.forget(i, sink);
             }
         }
@@ -267,7 +270,7 @@ impl TuioDecoder {
     fn is_succeeded(&self, old: &Source, t_us: u64) -> bool {
         !old.name.is_empty()
             && self.sources.iter().any(|new| {
-                new.used
+                new.is_used()
                     && new.first_us > old.heard_us
                     && t_us.saturating_sub(new.first_us) >= source::LATE_US
                     && new.peer.ip() == old.peer.ip()
@@ -276,13 +279,12 @@ impl TuioDecoder {
     }
 
     fn forget(&mut self, i: usize, sink: &mut impl FnMut(TuioEvent<'_>)) {
-        self.sources[i].used = false;
         self.counts.forgotten += 1;
-        self.lose(i, sink);
+        self.lose(i, Standing::Free, sink);
     }
 
-    fn lose(&mut self, i: usize, sink: &mut impl FnMut(TuioEvent<'_>)) {
-        if std::mem::take(&mut self.sources[i].found) {
+    fn lose(&mut self, i: usize, standing: Standing, sink: &mut impl FnMut(TuioEvent<'_>)) {
+        if std::mem::replace(&mut self.sources[i].standing, standing) == Standing::Found {
             sink(TuioEvent::Lost { source: i as u16 });
         }
     }
@@ -302,7 +304,7 @@ impl TuioDecoder {
         let taken = self.sources[i].take(t_us, &self.bundle, &mut self.counts);
         if matches!(taken, Taken::Restart(_)) {
             self.counts.restarts += 1;
-            self.lose(i, sink);
+            self.lose(i, Standing::Met, sink);
         }
         if matches!(taken, Taken::Frame | Taken::Restart(true)) {
             self.counts.frames += 1;
@@ -313,7 +315,7 @@ impl TuioDecoder {
     fn tell(&mut self, i: usize, sink: &mut impl FnMut(TuioEvent<'_>)) {
         let sender = &mut self.sources[i];
         let source = i as u16;
-        if !std::mem::replace(&mut sender.found, true) {
+        if std::mem::replace(&mut sender.standing, Standing::Found) != Standing::Found {
             sink(TuioEvent::Found {
                 source,
                 name: &String::from_utf8_lossy(&sender.name),
@@ -336,8 +338,9 @@ impl TuioDecoder {
         sink: &mut impl FnMut(TuioEvent<'_>),
     ) -> Option<usize> {
         let name = &self.bundle.name;
-        let of_peer =
-            |source: &Source, of: TuioVersion| source.used && source.peer == peer && source.version == of;
+        let of_peer = |source: &Source, of: TuioVersion| {
+            source.is_used() && source.peer == peer && source.version == of
+        };
         if version == TuioVersion::V1 && self.sources.iter().any(|source| of_peer(source, TuioVersion::V2)) {
             self.counts.other_version += 1;
             return None;
@@ -380,11 +383,12 @@ impl TuioDecoder {
     ) -> Option<usize> {
         // Who speaks both versions tells of each finger twice; 2.0 tells more.
         for i in 0..self.sources.len() {
-            if self.sources[i].used && self.sources[i].peer == peer && self.sources[i].version != version {
+            if self.sources[i].is_used() && self.sources[i].peer == peer && self.sources[i].version != version
+            {
                 self.forget(i, sink);
             }
         }
-        let free = self.sources.iter().position(|source| !source.used);
+        let free = self.sources.iter().position(|source| !source.is_used());
         let i = match free {
             Some(i) => i,
             None if self.sources.len() < MAX_SOURCES => {

@@ -31,11 +31,23 @@ pub(super) enum Taken {
     Restart(bool),
 }
 
+/// What is known of a sender by those who listen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// There is none: the place is free.
+    Free,
+    /// It is heard, and nobody was told.
+    Met,
+    /// It was told of, and its states are.
+    Found,
+    /// Its contacts were withdrawn because it was silent.
+    Silenced,
+}
+
 /// A sender and what it says.
 #[derive(Clone, Debug)]
 pub(super) struct Source {
-    /// False while the place is free.
-    pub(super) used: bool,
+    pub(super) standing: Standing,
     pub(super) peer: SocketAddr,
     pub(super) name: Vec<u8>,
     pub(super) version: TuioVersion,
@@ -47,10 +59,6 @@ pub(super) struct Source {
     /// When the last believed bundle came.
     pub(super) heard_us: u64,
     pub(super) bucket: Bucket,
-    /// True when its contacts were withdrawn because it was silent.
-    pub(super) silenced: bool,
-    /// True from its first state until it is lost.
-    pub(super) found: bool,
     contacts: [Contacts; PROFILES],
     /// Number of the last frame and when it came, by profile; 0 before the first.
     number: [i64; PROFILES],
@@ -63,7 +71,7 @@ pub(super) struct Source {
 impl Source {
     pub(super) fn new(peer: SocketAddr, t_us: u64) -> Self {
         Self {
-            used: false,
+            standing: Standing::Free,
             peer,
             name: Vec::with_capacity(super::bundle::NAME_BYTES),
             version: TuioVersion::V1,
@@ -72,8 +80,6 @@ impl Source {
             first_us: t_us,
             heard_us: t_us,
             bucket: Bucket::new(PACKETS_PER_S, t_us),
-            silenced: false,
-            found: false,
             contacts: [Contacts::new(), Contacts::new(), Contacts::new()],
             number: [0; PROFILES],
             numbered_us: [t_us; PROFILES],
@@ -84,7 +90,7 @@ impl Source {
 
     /// Makes a place that may have been another sender's the place of this one.
     pub(super) fn begin(&mut self, peer: SocketAddr, version: TuioVersion, name: &[u8], t_us: u64) {
-        self.used = true;
+        self.standing = Standing::Met;
         self.peer = peer;
         self.name.clear();
         self.name.extend_from_slice(name);
@@ -94,10 +100,13 @@ impl Source {
         self.first_us = t_us;
         self.heard_us = t_us;
         self.bucket = Bucket::new(PACKETS_PER_S, t_us);
-        self.silenced = false;
-        self.found = false;
         self.habit = Habit::new();
         self.forget_frames();
+    }
+
+    /// Whether the place is taken.
+    pub(super) fn is_used(&self) -> bool {
+        self.standing != Standing::Free
     }
 
     fn forget_frames(&mut self) {
@@ -115,7 +124,9 @@ impl Source {
 
     /// Whether it was silent for longer than it may with fingers down.
     pub(super) fn is_silent(&self, t_us: u64) -> bool {
-        !self.silenced && self.alive() > 0 && t_us.saturating_sub(self.heard_us) > self.habit.silence_us()
+        self.standing == Standing::Found
+            && self.alive() > 0
+            && t_us.saturating_sub(self.heard_us) > self.habit.silence_us()
     }
 
     /// Whether it was not heard for so long that it is no sender any more.
@@ -137,7 +148,9 @@ impl Source {
             self.habit.frame(t_us.saturating_sub(self.heard_us), news);
         }
         self.heard_us = self.heard_us.max(t_us);
-        self.silenced = false;
+        if self.standing == Standing::Silenced {
+            self.standing = Standing::Met;
+        }
         if taken != Taken::Nothing {
             self.frames += 1;
         }
@@ -254,7 +267,7 @@ impl Source {
 
     /// A sender that comes back from its silence with the fingers it had was not gone.
     fn doubt_silence(&mut self, profile: usize, alive: &[u32]) {
-        if self.silenced && self.contacts[profile].any_alive(alive) {
+        if self.standing == Standing::Silenced && self.contacts[profile].any_alive(alive) {
             self.habit.mistaken();
         }
     }
