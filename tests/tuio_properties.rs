@@ -245,3 +245,15 @@ fn a_sender_that_floods_is_read_at_its_rate() {
     assert!((20_000..=24_000).contains(&sources[0].1), "{sources:?}");
     well_formed(&table.events);
 }
+
+/// A count that jumps to and fro is a restart with each packet; those who listen must not be buried under them.
+#[test]
+fn restarts_are_rare() {
+    let mut table = Table::default();
+    for i in 0..50_000_u64 {
+        let number = if i % 2 == 0 { 1 } else { 1000 };
+        table.hear(i * 1000, &cursors("a@b", number, &[(number, 0.5, 0.5)]));
+    }
+    assert!(table.lost <= 4 * 51, "{}", table.lost);
+    well_formed(&table.events);
+}

@@ -1,6 +1,8 @@
 //! Touch devices that Orogen listens to itself: each has a thread that opens it, decodes what it says with
 //! [`crate::input`], and puts whole states into one bounded queue. The event loop empties the queue once per frame.
 
+pub mod tuio;
+
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -23,7 +23,7 @@
 //!
 //! [`MAX_SOURCES`] senders of [`MAX_CONTACTS`](crate::gesture::contact::MAX_CONTACTS) contacts each; packets of
 //! [`MAX_PACKET_BYTES`]; four bundles deep; 4,000 packets a second of each sender, and 500 of all strangers together,
-//! so that noise takes nothing from a table. Nothing is queued, and nothing is allocated after a sender was met.
+//! so that noise takes nothing from a table; four restarts a second. Nothing is queued, and nothing is allocated after a sender was met.
 
 mod bundle;
 mod contacts;
@@ -51,7 +51,10 @@ pub const MAX_SOURCES: usize = 16;
 pub const MAX_PACKET_BYTES: usize = 65_536;
 
 /// Packets of all who are no senders yet that are read in a second.
-const STRANGERS_PER_S: u64 = 500;
+const STRANGERS_PER_S: u32 = 500;
+
+/// Times a second that a sender may begin anew; who seems to more often is not read for a while.
+const RESTARTS_PER_S: i64 = 4;
 
 /// Version of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -304,6 +307,7 @@ impl TuioDecoder {
         let taken = self.sources[i].take(t_us, &self.bundle, &mut self.counts);
         if matches!(taken, Taken::Restart(_)) {
             self.counts.restarts += 1;
+            self.sources[i].bucket.charge(RESTARTS_PER_S);
             self.lose(i, Standing::Met, sink);
         }
         if matches!(taken, Taken::Frame | Taken::Restart(true)) {

@@ -71,38 +71,43 @@ impl Habit {
 /// Tokens that refill with time: one for a packet, and one more for each [`TOKEN_BYTES`] of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bucket {
-    /// Millionths of a token.
-    level: u64,
+    /// Millionths of a token; below 0 after a charge that there was not enough for.
+    level: i64,
     filled_us: u64,
-    per_second: u64,
+    per_second: i64,
 }
 
 /// Bytes of a packet that cost a token.
 const TOKEN_BYTES: usize = 2048;
 
 /// Millionths, so that a microsecond refills a whole number.
-const TOKEN: u64 = 1_000_000;
+const TOKEN: i64 = 1_000_000;
 
 impl Bucket {
     /// Full: as much as comes in one second.
-    pub(super) fn new(per_second: u64, t_us: u64) -> Self {
+    pub(super) fn new(per_second: u32, t_us: u64) -> Self {
         Self {
-            level: per_second * TOKEN,
+            level: i64::from(per_second) * TOKEN,
             filled_us: t_us,
-            per_second,
+            per_second: per_second.into(),
         }
     }
 
     /// Whether there is enough for a packet of so many bytes, which is then taken.
     pub(super) fn take(&mut self, t_us: u64, bytes: usize) -> bool {
-        let passed = t_us.saturating_sub(self.filled_us).min(TOKEN);
+        let passed = t_us.saturating_sub(self.filled_us).min(2 * TOKEN as u64) as i64;
         self.filled_us = self.filled_us.max(t_us);
         self.level = (self.level + passed * self.per_second).min(self.per_second * TOKEN);
-        let cost = (1 + bytes / TOKEN_BYTES) as u64 * TOKEN;
+        let cost = (1 + bytes / TOKEN_BYTES) as i64 * TOKEN;
         let enough = self.level >= cost;
         if enough {
             self.level -= cost;
         }
         enough
+    }
+
+    /// Takes what comes in this part of a second, also where there is less: for what should be rare.
+    pub(super) fn charge(&mut self, per_second: i64) {
+        self.level -= self.per_second * TOKEN / per_second;
     }
 }

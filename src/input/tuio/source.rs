@@ -18,7 +18,7 @@ const LATE_FRAMES: i64 = 100;
 pub(super) const LATE_US: u64 = 1_000_000;
 
 /// Packets of one sender that are read in a second: four tables of 240 Hz in four bundles for each frame.
-const PACKETS_PER_S: u64 = 4_000;
+const PACKETS_PER_S: u32 = 4_000;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
