@@ -8,7 +8,7 @@ use orogen::gesture::contact::{ContactEvent, InputFrame, Source};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
-use orogen::input::evemu::{EvemuOptions, import_evemu};
+use orogen::input::import::{ImportError, ImportOptions, Imported, import_evemu, import_libinput};
 use orogen::input::planet::{Colours, HEIGHT_RANGE_M, Heights};
 use orogen::rock::Stratigraphy;
 use orogen::settings::Settings;
@@ -29,14 +29,24 @@ pub(crate) fn gesture_reader(bytes: &[u8]) {
     }
 }
 
-/// A recording that is imported is a gesture file, and plays.
+/// A recording of evemu is refused in one line, or is a gesture file and plays.
 pub(crate) fn evemu_import(bytes: &[u8]) {
-    let given = EvemuOptions {
+    imported(|options| import_evemu(bytes, "fuzz", options));
+}
+
+/// The same of libinput record.
+pub(crate) fn libinput_import(bytes: &[u8]) {
+    imported(|options| import_libinput(bytes, "fuzz", options));
+}
+
+/// What is imported is a gesture file, and plays.
+fn imported(import: impl Fn(&ImportOptions) -> Result<Imported, ImportError>) {
+    let given = ImportOptions {
         range: Some([0.0, 4095.0, 0.0, 4095.0]),
         size_mm: Some([600.0, 340.0].into()),
     };
-    for options in [EvemuOptions::default(), given] {
-        match import_evemu(bytes, "fuzz", &options) {
+    for options in [ImportOptions::default(), given] {
+        match import(&options) {
             Ok(imported) => {
                 let mut header = Header::new(imported.size_mm);
                 header.title = Some(imported.title);

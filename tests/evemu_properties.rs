@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use glam::DVec2;
 use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Source};
-use orogen::input::evemu::{EvemuOptions, import_evemu};
+use orogen::input::import::{ImportOptions, import_evemu};
 use proptest::prelude::*;
 
 /// Units per mm: as fine as gesture files are, so that nothing is rounded.
@@ -192,7 +192,7 @@ fn nearly() -> impl Strategy<Value = Vec<u8>> {
 
 /// Refused in one line that says what was expected, or imported within the table's reach.
 fn holds(bytes: &[u8]) -> Result<(), TestCaseError> {
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: Some([0.0, 4095.0, 0.0, 4095.0]),
         size_mm: Some(DVec2::new(600.0, 340.0)),
     };
@@ -233,7 +233,7 @@ proptest! {
         if frames.is_empty() {
             return Ok(());
         }
-        let imported = import_evemu(text.as_bytes(), "any", &EvemuOptions::default())
+        let imported = import_evemu(text.as_bytes(), "any", &ImportOptions::default())
             .map_err(|error| TestCaseError::fail(error.to_string()))?;
         prop_assert_eq!(imported.frames, frames);
         prop_assert_eq!(imported.size_mm, DVec2::new(464.8, 255.6));

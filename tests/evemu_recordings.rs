@@ -1,60 +1,14 @@
 //! Small evemu recordings of every shape, and what becomes of them.
 
-use orogen::gesture::contact::{InputFrame, Phase};
-use orogen::input::evemu::{EvemuOptions, Imported, import_evemu};
+mod import_support;
 
-/// The head of a table of 400 × 300 mm with 10 units per mm.
-const HEAD: &str = "# EVEMU 1.3\n\nN: Table\nI: 0003 056a 005d 0005\nP: 02 00\nB: 00 0b 00\n\
-                    A: 2f 0 9 0 0 0\nA: 34 0 1 0 0 0\nA: 35 0 4000 4 0 10\nA: 36 0 3000 4 0 10\n";
+use orogen::gesture::contact::Phase;
+use orogen::input::import::{ImportOptions, Imported, import_evemu};
 
-/// Events in short: `slot 1`, `id 5`, `x 100`, `y 100`, `sync`, …, separated by commas, at `ms`.
-fn at(ms: u64, events: &str) -> String {
-    let lines = events.split(',').map(|event| {
-        let mut words = event.split_whitespace();
-        let (kind, code) = match words.next().unwrap_or_default() {
-            "slot" => (3, 0x2f),
-            "major" => (3, 0x30),
-            "minor" => (3, 0x31),
-            "width" => (3, 0x32),
-            "turn" => (3, 0x34),
-            "x" => (3, 0x35),
-            "y" => (3, 0x36),
-            "tool" => (3, 0x37),
-            "id" => (3, 0x39),
-            "button" => (1, 0x14a),
-            "single" => (3, 0),
-            "mt_report" => (0, 2),
-            "dropped" => (0, 3),
-            "sync" => (0, 0),
-            other => panic!("{other}"),
-        };
-        let value = words.next().unwrap_or("0");
-        let (s, ms) = (ms / 1000 + 1_369_413_358, ms % 1000);
-        format!("E: {s}.{ms:03}000 {kind:04x} {code:04x} {value}\t# as recorders write it\n")
-    });
-    lines.collect()
-}
+use import_support::{HEAD, at, shown};
 
 fn import(text: &str) -> Result<Imported, String> {
-    import_evemu(text.as_bytes(), "rec", &EvemuOptions::default()).map_err(|error| error.to_string())
-}
-
-/// Frames in short: `16: up 0.0, down 0.1 (1,2)`, with slot and generation.
-fn shown(frames: &[InputFrame]) -> Vec<String> {
-    let one = |frame: &InputFrame| {
-        let events = frame.events.iter().map(|event| {
-            let contact = &event.contact;
-            let (key, p) = (contact.key, contact.position);
-            match event.phase {
-                Phase::Up => format!("up {}.{}", key.id, key.generation),
-                Phase::Cancel => format!("cancel {}.{}", key.id, key.generation),
-                Phase::Move => format!("move {}.{} ({},{})", key.id, key.generation, p.x, p.y),
-                Phase::Down => format!("down {}.{} ({},{})", key.id, key.generation, p.x, p.y),
-            }
-        });
-        format!("{}: {}", frame.t_us / 1000, events.collect::<Vec<_>>().join(", "))
-    };
-    frames.iter().map(one).collect()
+    import_evemu(text.as_bytes(), "rec", &ImportOptions::default()).map_err(|error| error.to_string())
 }
 
 fn played(events: &[String]) -> (Vec<String>, Vec<String>) {
@@ -252,11 +206,11 @@ fn range_and_size_come_from_the_options_or_the_recording() {
                      # Resolution 10\n# Event code 54 (ABS_MT_POSITION_Y)\n# Min 0\n# Max 300\n# Resolution 5\n\
                      # Properties:\n# Min 9\n";
     let axes = "A: 35 0 640 0 0\nA: 36 0 480 0 0\n";
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: Some([0.0, 3200.0, -120.0, 1200.0]),
         size_mm: Some([100.0, 110.0].into()),
     };
-    let import = |head: &str, options: &EvemuOptions| {
+    let import = |head: &str, options: &ImportOptions| {
         import_evemu((head.to_owned() + &touch).as_bytes(), "rec", options)
             .map(|i| {
                 (
@@ -266,7 +220,7 @@ fn range_and_size_come_from_the_options_or_the_recording() {
             })
             .map_err(|error| error.to_string())
     };
-    let none = EvemuOptions::default();
+    let none = ImportOptions::default();
     // Lines 35 and 36 have no range of their own where the comment has one, and no resolution but the comment's.
     assert_eq!(import(described, &none), Ok(([60.0, 60.0], [30.0, 24.0])));
     assert_eq!(
@@ -287,28 +241,28 @@ fn range_and_size_come_from_the_options_or_the_recording() {
     assert!(error.contains("--size-mm W,H"), "{error}");
     for (bad, field) in [
         (
-            EvemuOptions {
+            ImportOptions {
                 range: Some([5.0, 5.0, 0.0, 1.0]),
                 ..options
             },
             "--range",
         ),
         (
-            EvemuOptions {
+            ImportOptions {
                 range: Some([0.0, f64::INFINITY, 0.0, 1.0]),
                 ..options
             },
             "--range",
         ),
         (
-            EvemuOptions {
+            ImportOptions {
                 size_mm: Some([0.0, 1.0].into()),
                 ..options
             },
             "--size-mm",
         ),
         (
-            EvemuOptions {
+            ImportOptions {
                 size_mm: Some([f64::NAN, 1.0].into()),
                 ..options
             },
@@ -322,7 +276,7 @@ fn range_and_size_come_from_the_options_or_the_recording() {
 
 #[test]
 fn options_win_over_what_a_recording_says_and_say_so() {
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: Some([0.0, 640.0, 0.0, 480.0]),
         size_mm: Some([200.0, 150.0].into()),
     };
@@ -341,10 +295,10 @@ fn options_win_over_what_a_recording_says_and_say_so() {
 }
 
 #[test]
-fn what_is_no_protocol_b_recording_is_refused_by_line() {
+fn what_is_no_recording_is_refused_by_line() {
     let touch = at(0, "id 1,x 320,y 120,sync");
     for (events, start, holds) in [
-        (at(0, "x 1,y 1,mt_report,sync"), "rec:13: ", "protocol A"),
+        (at(0, "slot 0,x 1,y 1,mt_report,sync"), "rec:14: ", "protocol A"),
         (at(0, "single 5,sync"), "rec:11: ", "only single-touch axes"),
         (at(0, "sync"), "rec:11: ", "no events of any axis"),
         (String::new(), "rec:10: ", "no events of any axis"),
@@ -364,7 +318,7 @@ fn what_is_no_protocol_b_recording_is_refused_by_line() {
         (at(0, "x 300000,y 1,sync"), "rec:13: ", "check --range"),
         ("nonsense\n".to_owned(), "rec:11: ", "line: expected N:, I:"),
         ("A: 35 0\n".to_owned(), "rec:11: ", "A: code min max"),
-        ("#".repeat(5000) + "\n", "rec:11: ", "4096 bytes"),
+        ("#".repeat(20_000) + "\n", "rec:11: ", "16384 bytes"),
         ("E: 1.000000 0003 0035 ü\n".to_owned(), "rec:11: ", "found \"ü\""),
     ] {
         let error = import(&(HEAD.to_owned() + &events)).unwrap_err();

@@ -12,7 +12,7 @@ use orogen::gesture::contact::{InputFrame, Phase};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
-use orogen::input::evemu::{EvemuError, EvemuOptions, Imported, import_evemu};
+use orogen::input::import::{ImportError, ImportOptions, Imported, import_evemu};
 
 /// The recording of this name, or `None` after saying that it is skipped.
 fn recording(name: &str) -> Option<PathBuf> {
@@ -35,7 +35,7 @@ fn recording(name: &str) -> Option<PathBuf> {
     None
 }
 
-fn import(path: &Path, options: &EvemuOptions) -> Result<Imported, EvemuError> {
+fn import(path: &Path, options: &ImportOptions) -> Result<Imported, ImportError> {
     import_evemu(
         File::open(path).expect("a readable recording"),
         "recording",
@@ -92,7 +92,7 @@ fn ten_fingers_on_a_large_tablet() {
     let Some(path) = recording("tablets_Wacom_DTH2242_Finger.events") else {
         return;
     };
-    let imported = import(&path, &EvemuOptions::default()).unwrap();
+    let imported = import(&path, &ImportOptions::default()).unwrap();
     assert_eq!(imported.title, "Wacom DTH2242 Finger");
     assert_eq!(imported.size_mm, DVec2::new(464.8, 255.6));
     assert_eq!(imported.warnings, Vec::<String>::new());
@@ -116,12 +116,12 @@ fn four_fingers_drag_on_a_small_screen() {
     let Some(path) = recording("touchscreens_EP0430M09.4-finger-drag-down.events") else {
         return;
     };
-    let error = import(&path, &EvemuOptions::default()).unwrap_err().to_string();
+    let error = import(&path, &ImportOptions::default()).unwrap_err().to_string();
     assert!(
         error.starts_with("recording:") && error.contains("--size-mm W,H"),
         "{error}"
     );
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: Some([0.0, 1279.0, 0.0, 767.0]),
         size_mm: Some(DVec2::new(95.0, 54.0)),
     };
@@ -137,7 +137,7 @@ fn a_recording_without_a_head_needs_range_and_size() {
     let Some(path) = recording("tablets_Wacom_ISDv4_E6_Finger.double-center-circle.events") else {
         return;
     };
-    let mut options = EvemuOptions {
+    let mut options = ImportOptions {
         range: None,
         size_mm: Some(DVec2::new(278.0, 156.0)),
     };
@@ -150,29 +150,49 @@ fn a_recording_without_a_head_needs_range_and_size() {
 }
 
 #[test]
-fn other_protocols_are_refused_by_name() {
-    let given = EvemuOptions {
-        range: Some([0.0, 9600.0, 0.0, 7200.0]),
-        size_mm: Some(DVec2::new(300.0, 200.0)),
+fn single_touch_is_refused() {
+    let Some(path) = recording("tablets_eGalax_Inc._USB_TouchController.events") else {
+        return;
     };
-    for (name, words) in [
-        (
-            "tablets_eGalax_Inc._USB_TouchController.events",
-            "expected multi-touch events (ABS_MT_POSITION_X, ABS_MT_POSITION_Y), found only single-touch axes",
-        ),
-        (
-            "touchscreens_N-Trig_MultiTouch.1-finger-drag-NW-SE.events",
-            "expected multi-touch protocol B (ABS_MT_SLOT, ABS_MT_TRACKING_ID), found SYN_MT_REPORT of protocol A",
-        ),
-        (
-            "touchscreens_N-Trig_MultiTouch.2-fingers-touch-release.events",
-            "found SYN_MT_REPORT of protocol A",
-        ),
-    ] {
-        let Some(path) = recording(name) else { continue };
-        for options in [EvemuOptions::default(), given] {
-            let error = import(&path, &options).unwrap_err().to_string();
-            assert!(error.contains(words), "{name}: {error}");
-        }
+    for options in [ImportOptions::default(), N_TRIG] {
+        let error = import(&path, &options).unwrap_err().to_string();
+        let words = "expected multi-touch events (ABS_MT_POSITION_X, ABS_MT_POSITION_Y), found only single-touch axes";
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+/// As large as the 12-inch screens it was built into.
+const N_TRIG: ImportOptions = ImportOptions {
+    range: Some([0.0, 9600.0, 0.0, 7200.0]),
+    size_mm: Some(DVec2::new(256.0, 192.0)),
+};
+
+#[test]
+fn the_older_protocol_follows_each_finger() {
+    let needs = |name: &str| {
+        let path = recording(name)?;
+        let error = import(&path, &ImportOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("give --range X0,X1,Y0,Y1"), "{error}");
+        let imported = import(&path, &N_TRIG).unwrap();
+        assert_eq!(imported.warnings, Vec::<String>::new());
+        Some(imported)
+    };
+    if let Some(imported) = needs("touchscreens_N-Trig_MultiTouch.1-finger-drag-NW-SE.events") {
+        let (first, last) = (imported.frames.first().unwrap(), imported.frames.last().unwrap());
+        assert_eq!(most_down(&imported.frames), 1);
+        let at = |frame: &InputFrame| frame.events[0].contact.position;
+        // North-west to south-east, in one stroke.
+        assert!(at(first).max_element() < 10.0 && at(last).min_element() > 180.0);
+        let stats = round_trip_and_play(imported).stats();
+        assert_eq!((stats.total, stats.hands, stats.pushes), (1, 1, 1), "{stats:?}");
+    }
+    if let Some(imported) = needs("touchscreens_N-Trig_MultiTouch.2-fingers-touch-release.events") {
+        assert_eq!(most_down(&imported.frames), 2);
+        let stats = round_trip_and_play(imported).stats();
+        assert_eq!(
+            (stats.total, stats.ignored, stats.doubled),
+            (2, 0, 0),
+            "{stats:?}"
+        );
     }
 }

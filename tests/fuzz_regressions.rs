@@ -33,7 +33,12 @@ fn gesture_reader() {
 
 #[test]
 fn evemu_import() {
-    assert!(replay("evemu_import", checks::evemu_import) >= 2);
+    assert!(replay("evemu_import", checks::evemu_import) >= 3);
+}
+
+#[test]
+fn libinput_import() {
+    assert!(replay("libinput_import", checks::libinput_import) >= 1);
 }
 
 #[test]
@@ -55,7 +60,7 @@ fn planet_image() {
 #[test]
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
-    use orogen::input::evemu::{EvemuOptions, import_evemu};
+    use orogen::input::import::{ImportOptions, import_evemu, import_libinput};
     use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
@@ -75,13 +80,16 @@ fn seeds_are_read() {
     Heights::decode(&planet("heights.png"), [0.0, 1.0]).unwrap();
     Colours::decode(&planet("plates.png")).unwrap();
     Colours::decode(&planet("plates.exr")).unwrap();
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: None,
         size_mm: Some([100.0, 60.0].into()),
     };
-    for name in ["two_fingers", "mid_touch"] {
+    for name in ["two_fingers", "mid_touch", "packets"] {
         let path = seeds.join(format!("evemu_import/{name}.events"));
         let imported = import_evemu(fs::File::open(path).unwrap(), name, &options).unwrap();
         assert!(imported.frames.len() >= 3, "{name}");
     }
+    let path = seeds.join("libinput_import/two_devices.yml");
+    let imported = import_libinput(fs::File::open(path).unwrap(), "yml", &options).unwrap();
+    assert!(imported.frames.len() >= 3);
 }

@@ -9,13 +9,13 @@ use super::console::Console;
 use super::failure::Failure;
 use crate::export::OutDir;
 use crate::gesture::file::{GestureFile, Header};
-use crate::input::evemu::{EvemuOptions, import_evemu};
+use crate::input::import::{ImportOptions, import_recording};
 use crate::sim::SimParams;
 
 /// Reads the recording of `args` and writes it as a gesture file.
 pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
     let name = args.file.display().to_string();
-    let options = EvemuOptions {
+    let options = ImportOptions {
         range: args
             .range
             .as_deref()
@@ -29,7 +29,7 @@ pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
             .map(|[w, h]: [f64; 2]| glam::DVec2::new(w, h)),
     };
     let file = File::open(&args.file).map_err(|error| Failure::input(format!("{name}: {error}")))?;
-    let imported = import_evemu(BufReader::new(file), &name, &options).map_err(Failure::input)?;
+    let imported = import_recording(BufReader::new(file), &name, &options).map_err(Failure::input)?;
     for warning in &imported.warnings {
         Console::warn(warning);
     }

@@ -58,7 +58,7 @@ enum Command {
     Planet(PlanetArgs),
     /// Erode a terrain in batch: uplift in, eroded land out.
     Erode(ErodeArgs),
-    /// Turn a recording of another tool (evemu, multi-touch protocol B) into a gesture file.
+    /// Turn a recording of another tool into a gesture file.
     Import(ImportArgs),
     /// Is this machine fast enough? Every stage at the sizes of the literature.
     Bench(BenchArgs),

@@ -1,6 +1,7 @@
 //! What comes from outside: maps, whole planets as images, piles of rock, recordings of other tools that become contacts, and the touches of a window.
 
-pub mod evemu;
+pub mod hid;
+pub mod import;
 pub mod maps;
 pub mod pile;
 pub mod planet;

@@ -1,32 +1,64 @@
-//! One line of a recording.
+//! Recordings of `evemu-record`.
+//!
+//! A recording is a text of lines: `#` comments, the device's name and axes (`N:`, `A:`), and events
+//! (`E: sec.usec type code value`, type and code hexadecimal) of one of the kernel's two multi-touch protocols.
+//!
+//! The `A:` lines 35 and 36 give the range of the positions, their resolution (units per mm) the size; old recorders
+//! write the resolution only into the comment that describes the axis.
+
+use std::io::Read;
 
 use serde_json::Value;
 
-use super::axes::Axis;
+use super::evdev::{Axis, Event, Recording};
+use super::lines::Lines;
+use super::time::micros;
+use super::{ImportError, ImportFault, ImportOptions, Imported};
 use crate::gesture::json::Expected;
 
-// Linux kernel, include/uapi/linux/input-event-codes.h.
-pub(super) const EV_SYN: u16 = 0;
-pub(super) const EV_ABS: u16 = 3;
-pub(super) const SYN_REPORT: u16 = 0;
-pub(super) const SYN_MT_REPORT: u16 = 2;
-pub(super) const SYN_DROPPED: u16 = 3;
-pub(super) const ABS_MT_SLOT: u16 = 0x2f;
-pub(super) const ABS_MT_TOUCH_MAJOR: u16 = 0x30;
-pub(super) const ABS_MT_TOUCH_MINOR: u16 = 0x31;
-pub(super) const ABS_MT_WIDTH_MAJOR: u16 = 0x32;
-pub(super) const ABS_MT_WIDTH_MINOR: u16 = 0x33;
-pub(super) const ABS_MT_ORIENTATION: u16 = 0x34;
-pub(super) const ABS_MT_POSITION_X: u16 = 0x35;
-pub(super) const ABS_MT_POSITION_Y: u16 = 0x36;
-pub(super) const ABS_MT_TOOL_TYPE: u16 = 0x37;
-pub(super) const ABS_MT_TRACKING_ID: u16 = 0x39;
-/// Value of `ABS_MT_TOOL_TYPE`.
-pub(super) const MT_TOOL_PALM: i32 = 2;
+/// Reads a recording; `name` stands for it in errors, and in the title where the device has no name. `options` win
+/// over what the recording says about itself.
+///
+/// With protocol B ids are slots; with protocol A the contacts are matched from frame to frame. A contact lands when
+/// both its coordinates are known; what is down at the end is cancelled.
+///
+/// # Errors
+/// Anything but a multi-touch recording with known range and size, by line.
+pub fn import_evemu<R: Read>(
+    source: R,
+    name: &str,
+    options: &ImportOptions,
+) -> Result<Imported, ImportError> {
+    let mut lines = Lines::new(source);
+    let mut recording = Recording::default();
+    if let Err(fault) = read(&mut lines, &mut recording) {
+        return Err(fault.at(name, lines.count));
+    }
+    let mut line = lines.count;
+    recording
+        .import(name, options, &mut line)
+        .map_err(|fault| fault.at(name, line))
+}
+
+fn read<R: Read>(lines: &mut Lines<R>, recording: &mut Recording) -> Result<(), ImportFault> {
+    while let Some(line) = lines.next()? {
+        let (parsed, torn) = (Line::parse(&line.text), line.torn);
+        match parsed {
+            Ok(Line::Nothing) => {}
+            Ok(Line::Name(name)) => recording.name(name),
+            Ok(Line::Comment(text)) => recording.comment(&text),
+            Ok(Line::Axis(code, axis)) => recording.axis(code, axis),
+            Ok(Line::Event(event)) => recording.event(event, lines.count)?,
+            Err(_) if torn => recording.torn(lines.count),
+            Err(fault) => return Err(fault.into()),
+        }
+    }
+    Ok(())
+}
 
 /// What a line says.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Line {
+enum Line {
     /// Nothing of interest: identity, properties, key masks, lamps, switches, or an empty line.
     Nothing,
     /// `N:` the device's name.
@@ -39,19 +71,8 @@ pub(super) enum Line {
     Event(Event),
 }
 
-/// An event of the kernel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Event {
-    /// Time, µs since some epoch.
-    pub(super) t_us: u64,
-    /// `EV_…`
-    pub(super) kind: u16,
-    pub(super) code: u16,
-    pub(super) value: i32,
-}
-
 impl Line {
-    pub(super) fn parse(text: &str) -> Result<Self, Expected> {
+    fn parse(text: &str) -> Result<Self, Expected> {
         let text = text.trim();
         if let Some(comment) = text.strip_prefix('#') {
             return Ok(Self::Comment(comment.to_owned()));
@@ -132,19 +153,6 @@ fn event(rest: &str) -> Result<Line, Expected> {
     }))
 }
 
-fn micros(text: &str) -> Result<u64, Expected> {
-    let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
-    let parse = || {
-        // Fewer than six digits would be a fraction for some writers and a count for others.
-        let (sec, usec) = text
-            .split_once('.')
-            .filter(|(s, us)| digits(s) && digits(us) && us.len() == 6)?;
-        let sec: u64 = sec.parse().ok()?;
-        sec.checked_mul(1_000_000)?.checked_add(usec.parse().ok()?)
-    };
-    parse().ok_or_else(|| Expected::new("E: time", "seconds with six decimals", &Value::from(text)))
-}
-
 fn hexadecimal(field: &str, text: &str) -> Result<u16, Expected> {
     Some(text)
         .filter(|text| text.bytes().all(|b| b.is_ascii_hexdigit()))
@@ -166,6 +174,7 @@ fn decimal(field: &str, text: &str) -> Result<i32, Expected> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::import::evdev::codes::{ABS_MT_POSITION_X, ABS_MT_TRACKING_ID, EV_ABS};
 
     #[test]
     fn events_have_hexadecimal_codes_and_padded_decimal_values() {

@@ -2,33 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::line::{
-    ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_TOOL_TYPE, ABS_MT_TOUCH_MAJOR,
-    ABS_MT_TOUCH_MINOR, ABS_MT_TRACKING_ID, ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR, MT_TOOL_PALM,
-};
+use super::codes::ABS_MT_TRACKING_ID;
+use super::touch::{RawEvent, Readings, Touch};
 use crate::gesture::contact::Phase;
-
-/// A contact in device units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Touch {
-    pub(super) x: i32,
-    pub(super) y: i32,
-    /// Major and minor axis of the touching area.
-    pub(super) area: Option<(i32, i32)>,
-    /// Major and minor axis of what approaches: the finger around that area.
-    pub(super) approach: Option<(i32, i32)>,
-    pub(super) orientation: i32,
-    pub(super) palm: bool,
-}
-
-/// A contact and what happens to it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct RawEvent {
-    pub(super) phase: Phase,
-    pub(super) slot: u16,
-    pub(super) generation: u32,
-    pub(super) touch: Touch,
-}
 
 /// Who is in a slot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,30 +23,14 @@ enum Tracking {
 #[derive(Debug, Default)]
 struct Slot {
     tracking: Tracking,
-    /// The last value of each code: contacts inherit what the kernel does not repeat.
-    readings: BTreeMap<u16, i32>,
+    /// Contacts inherit what the kernel does not repeat.
+    readings: Readings,
     /// The contact that is down after the last frame.
     shown: Option<Touch>,
     /// True if that one lifted since.
     lifted: bool,
     /// How often a contact went down here.
     downs: u32,
-}
-
-impl Slot {
-    fn touch(&self) -> Option<Touch> {
-        let get = |code| self.readings.get(&code).copied();
-        // Without a minor axis the area is round (kernel documentation).
-        let pair = |major, minor| get(major).map(|major| (major, get(minor).unwrap_or(major)));
-        Some(Touch {
-            x: get(ABS_MT_POSITION_X)?,
-            y: get(ABS_MT_POSITION_Y)?,
-            area: pair(ABS_MT_TOUCH_MAJOR, ABS_MT_TOUCH_MINOR),
-            approach: pair(ABS_MT_WIDTH_MAJOR, ABS_MT_WIDTH_MINOR),
-            orientation: get(ABS_MT_ORIENTATION).unwrap_or(0),
-            palm: get(ABS_MT_TOOL_TYPE) == Some(MT_TOOL_PALM),
-        })
-    }
 }
 
 /// All slots of a device.
@@ -81,8 +41,6 @@ pub(super) struct Slots {
     selected: u16,
     /// The slots of which the frame speaks.
     touched: BTreeSet<u16>,
-    seen_x: bool,
-    seen_y: bool,
     /// Contacts that were down before anything was told of them.
     pub(super) mid_touch: usize,
     /// Contacts of which no frame knew the whole position.
@@ -94,27 +52,15 @@ impl Slots {
         self.selected = slot;
     }
 
-    /// True if both coordinates were told at least once.
-    pub(super) fn has_positions(&self) -> bool {
-        self.seen_x && self.seen_y
-    }
-
-    /// Takes a reading of the selected slot; false if the code says nothing about contacts.
-    pub(super) fn read(&mut self, code: u16, value: i32) -> bool {
-        match code {
-            ABS_MT_TRACKING_ID => self.track(value),
-            ABS_MT_POSITION_X => self.seen_x = true,
-            ABS_MT_POSITION_Y => self.seen_y = true,
-            ABS_MT_TOUCH_MAJOR | ABS_MT_TOUCH_MINOR | ABS_MT_WIDTH_MAJOR | ABS_MT_WIDTH_MINOR
-            | ABS_MT_ORIENTATION | ABS_MT_TOOL_TYPE => {}
-            _ => return false,
-        }
+    /// Takes a reading of the selected slot.
+    pub(super) fn read(&mut self, code: u16, value: i32) {
         self.touched.insert(self.selected);
-        if code != ABS_MT_TRACKING_ID {
+        if code == ABS_MT_TRACKING_ID {
+            self.track(value);
+        } else {
             let slot = self.by_number.entry(self.selected).or_default();
-            slot.readings.insert(code, value);
+            slot.readings.tell(code, value);
         }
-        true
     }
 
     /// The tracking id of the selected slot changes.
@@ -153,7 +99,9 @@ impl Slots {
             {
                 say(Phase::Up, slot.downs, touch);
             }
-            let Some(touch) = slot.touch() else { continue };
+            let Some(touch) = slot.readings.touch() else {
+                continue;
+            };
             if slot.tracking == Tracking::Unknown {
                 slot.tracking = Tracking::Unnamed;
                 self.mid_touch += 1;

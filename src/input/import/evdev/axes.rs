@@ -5,25 +5,25 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use serde_json::Value;
 
-use super::line::{
+use super::codes::{
     ABS_MT_ORIENTATION, ABS_MT_POSITION_X, ABS_MT_POSITION_Y, ABS_MT_SLOT, ABS_MT_TOUCH_MAJOR,
     ABS_MT_WIDTH_MAJOR, EV_ABS,
 };
-use super::{EvemuFault, EvemuOptions};
+
 use crate::gesture::contact::MAX_CONTACTS;
-use crate::gesture::file::MAX_SIZE_MM;
 use crate::gesture::json::Expected;
+use crate::input::import::{ImportFault, ImportOptions, is_size};
 
 /// Least and greatest value of an axis, in device units.
 type Range = (f64, f64);
 
 /// Range and resolution of an axis, as far as they are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Axis {
-    pub(super) min: Option<i32>,
-    pub(super) max: Option<i32>,
+pub(in super::super) struct Axis {
+    pub(in super::super) min: Option<i32>,
+    pub(in super::super) max: Option<i32>,
     /// Units per millimetre.
-    pub(super) resolution: Option<i32>,
+    pub(in super::super) resolution: Option<i32>,
 }
 
 impl Axis {
@@ -92,13 +92,13 @@ impl Axes {
     /// are absent or wrong on one device in eight.
     pub(super) fn plane(
         &self,
-        options: &EvemuOptions,
+        options: &ImportOptions,
         warnings: &mut Vec<String>,
-    ) -> Result<Plane, EvemuFault> {
+    ) -> Result<Plane, ImportFault> {
         let range = |code| self.ask(code, Axis::range);
         let told = range(ABS_MT_POSITION_X).zip(range(ABS_MT_POSITION_Y));
         let given = options.range.map(given_range).transpose()?;
-        let ((x0, x1), (y0, y1)) = given.or(told).ok_or(EvemuFault::NoRange)?;
+        let ((x0, x1), (y0, y1)) = given.or(told).ok_or(ImportFault::NoRange)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
             warnings.push("--range used in place of the recording's own".to_owned());
         }
@@ -108,8 +108,8 @@ impl Axes {
             .zip(resolution(ABS_MT_POSITION_Y))
             .map(|(x, y)| units / DVec2::new(x.into(), y.into()))
             .filter(|size| is_size(*size));
-        let given = options.size_mm.map(given_size).transpose()?;
-        let size_mm = given.or(told).ok_or(EvemuFault::NoSize)?;
+        let given = options.size()?;
+        let size_mm = given.or(told).ok_or(ImportFault::NoSize)?;
         if told.is_some_and(|told| given.is_some_and(|given| given != told)) {
             warnings.push("--size-mm used in place of the recording's own".to_owned());
         }
@@ -140,7 +140,7 @@ impl Axes {
     }
 }
 
-fn given_range(range: [f64; 4]) -> Result<(Range, Range), EvemuFault> {
+fn given_range(range: [f64; 4]) -> Result<(Range, Range), ImportFault> {
     let [x0, x1, y0, y1] = range;
     // Differences of what fits in 32 bits stay exact.
     let reach = f64::from(i32::MAX) + 1.0;
@@ -149,18 +149,6 @@ fn given_range(range: [f64; 4]) -> Result<(Range, Range), EvemuFault> {
     }
     let what = "X0,X1,Y0,Y1 in device units with X0 < X1 and Y0 < Y1";
     Err(Expected::new("--range", what, &Value::from(range.to_vec())).into())
-}
-
-fn given_size(size: DVec2) -> Result<DVec2, EvemuFault> {
-    if is_size(size) {
-        return Ok(size);
-    }
-    let what = format!("W,H in mm, both above 0 and below {MAX_SIZE_MM}");
-    Err(Expected::new("--size-mm", what, &Value::from(size.to_array().to_vec())).into())
-}
-
-fn is_size(size: DVec2) -> bool {
-    size.cmpgt(DVec2::ZERO).all() && size.cmplt(DVec2::splat(MAX_SIZE_MM)).all()
 }
 
 /// The touching surface in device units and millimetres.
