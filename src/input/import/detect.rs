@@ -12,12 +12,14 @@ pub enum Recorder {
     Evemu,
     /// `libinput record`.
     Libinput,
+    /// A capture of TUIO.
+    Tuio,
 }
 
 impl Recorder {
     /// All of them, in words.
-    pub(super) const UNDERSTOOD: &str =
-        "a recording of evemu-record (N:, A:, E: lines) or libinput record (YAML with version: and devices:)";
+    pub(super) const UNDERSTOOD: &str = "a recording of evemu-record (N:, A:, E: lines), libinput record (YAML with version: and devices:) or a capture \
+         of TUIO (JSON with hex)";
 
     /// The tool whose recording begins with `head`.
     ///
@@ -41,6 +43,9 @@ impl Recorder {
 
     /// What one line tells.
     fn by_line(line: &str) -> Option<Self> {
+        if line.starts_with('[') || line.starts_with('{') && line.contains("\"hex\"") {
+            return Some(Self::Tuio);
+        }
         let (key, _) = line.split_once(':')?;
         match key {
             "version" | "ndevices" | "devices" | "libinput" => Some(Self::Libinput),

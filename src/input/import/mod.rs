@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | `evemu-record` | [`evemu`] | the kernel's events, protocols A and B |
 //! | `libinput record` | [`libinput`] | the same, in YAML, of several devices |
+//! | captures of TUIO | [`tuio`] | the packets that trackers sent |
 //!
 //! [`import_recording`] finds out which tool wrote a recording; nothing else does, names of files least of all. Every
 //! importer takes any bytes, and refuses what it does not understand in one line that names file and line.
@@ -16,6 +17,7 @@ mod fault;
 pub mod libinput;
 mod lines;
 mod time;
+pub mod tuio;
 
 use std::io::Read;
 
@@ -30,6 +32,7 @@ pub use evemu::import_evemu;
 pub use fault::{ImportError, ImportFault};
 pub use libinput::import_libinput;
 pub use lines::{MAX_LINE_BYTES, MAX_LINES};
+pub use tuio::import_tuio;
 
 /// Bytes from which it is told which tool wrote a recording: the longest description of a device fits twice.
 const HEAD_BYTES: u64 = 64 * 1024;
@@ -97,6 +100,7 @@ pub fn import_recording<R: Read>(
     match recorder {
         Recorder::Evemu => import_evemu(whole, name, options),
         Recorder::Libinput => import_libinput(whole, name, options),
+        Recorder::Tuio => import_tuio(whole, name, options),
     }
 }
 
