@@ -7,7 +7,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use glam::DVec2;
-use orogen::gesture::contact::{InputFrame, Phase};
+use orogen::gesture::contact::InputFrame;
+use orogen::gesture::contact::Phase::{self, Cancel, Down, Move, Up};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::input::import::{ImportOptions, Imported, import_recording, import_tuio};
 use proptest::prelude::*;
@@ -71,7 +72,6 @@ fn round_trip(imported: &Imported) {
 
 #[test]
 fn packets_with_times_become_contacts_with_the_lowest_free_ids() {
-    use Phase::{Down, Move, Up};
     let text = [
         line(1000.0, &cursors("a@b", 1, &[])),
         line(1016.5, &cursors("a@b", 2, &[(70, 0.1, 0.1), (71, 0.2, 0.2)])),
@@ -111,10 +111,7 @@ fn a_list_without_times_is_sixty_packets_a_second() {
     let text = format!("\n [{}]\n", objects.join(",\n"));
     let imported = import_recording(text.as_bytes(), "capture", &options()).unwrap();
     let times: Vec<_> = events(&imported.frames).iter().map(|e| (e.0, e.1)).collect();
-    assert_eq!(
-        times,
-        [(0, Phase::Down), (16_667, Phase::Move), (33_334, Phase::Cancel)]
-    );
+    assert_eq!(times, [(0, Down), (16_667, Move), (33_334, Cancel)]);
     let warnings = [
         "no packet has a time: taken as sixty a second",
         "1 contact(s) still down at the end, cancelled",
@@ -140,10 +137,7 @@ fn senders_have_contacts_of_their_own() {
     .concat();
     let imported = import(&text).unwrap();
     let brief: Vec<_> = events(&imported.frames).iter().map(|e| (e.1, e.2)).collect();
-    assert_eq!(
-        brief,
-        [(Phase::Down, 0), (Phase::Down, 1), (Phase::Up, 0), (Phase::Up, 1)]
-    );
+    assert_eq!(brief, [(Down, 0), (Down, 1), (Up, 0), (Up, 1)]);
     round_trip(&imported);
 }
 
@@ -158,7 +152,6 @@ fn silence_and_new_starts_are_as_on_the_live_table() {
     text += &line(20_032.0, &cursors("a@b", 2, &[]));
     let imported = import(&text).unwrap();
     let brief: Vec<_> = events(&imported.frames).iter().map(|e| (e.0, e.1)).collect();
-    use Phase::{Cancel, Down, Up};
     let expected = [
         (0, Down),
         (29 * 16_000 + 1_050_000, Cancel),
@@ -274,7 +267,6 @@ fn packets_of_python_tuio_are_imported() {
         return;
     }
     let imported = import_recording(std::fs::File::open(path).unwrap(), "packets", &options()).unwrap();
-    use Phase::{Down, Move, Up};
     let brief: Vec<_> = events(&imported.frames)
         .iter()
         .map(|e| (e.0, e.1, e.2, e.4))

@@ -11,14 +11,14 @@ use orogen::input::tuio::{MAX_SOURCES, TuioDecoder, TuioEvent, TuioOptions};
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
 
 /// The profiles of TUIO 1.1.
-pub const CURSOR: &str = "/tuio/2Dcur";
+pub(crate) const CURSOR: &str = "/tuio/2Dcur";
 /// Objects.
-pub const OBJECT: &str = "/tuio/2Dobj";
+pub(crate) const OBJECT: &str = "/tuio/2Dobj";
 /// Blobs.
-pub const BLOB: &str = "/tuio/2Dblb";
+pub(crate) const BLOB: &str = "/tuio/2Dblb";
 
 /// A message to `address`.
-pub fn message(address: &str, args: Vec<OscType>) -> OscPacket {
+pub(crate) fn message(address: &str, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage {
         addr: address.to_owned(),
         args,
@@ -26,12 +26,12 @@ pub fn message(address: &str, args: Vec<OscType>) -> OscPacket {
 }
 
 /// A bundle "at once", as bytes.
-pub fn bundle(content: Vec<OscPacket>) -> Vec<u8> {
+pub(crate) fn bundle(content: Vec<OscPacket>) -> Vec<u8> {
     encoder::encode(&nested(content)).expect("a packet")
 }
 
 /// A bundle to stand in another one.
-pub fn nested(content: Vec<OscPacket>) -> OscPacket {
+pub(crate) fn nested(content: Vec<OscPacket>) -> OscPacket {
     let timetag = OscTime {
         seconds: 0,
         fractional: 1,
@@ -40,46 +40,46 @@ pub fn nested(content: Vec<OscPacket>) -> OscPacket {
 }
 
 /// `source name`.
-pub fn source(profile: &str, name: &str) -> OscPacket {
+pub(crate) fn source(profile: &str, name: &str) -> OscPacket {
     message(profile, vec!["source".into(), name.into()])
 }
 
 /// `alive s_id...`.
-pub fn alive(profile: &str, ids: &[i32]) -> OscPacket {
+pub(crate) fn alive(profile: &str, ids: &[i32]) -> OscPacket {
     let ids = ids.iter().map(|id| OscType::Int(*id));
     message(profile, std::iter::once("alive".into()).chain(ids).collect())
 }
 
 /// `fseq n`.
-pub fn fseq(profile: &str, number: i32) -> OscPacket {
+pub(crate) fn fseq(profile: &str, number: i32) -> OscPacket {
     message(profile, vec!["fseq".into(), number.into()])
 }
 
 /// `set s_id x y X Y m`.
-pub fn cursor(id: i32, x: f32, y: f32) -> OscPacket {
+pub(crate) fn cursor(id: i32, x: f32, y: f32) -> OscPacket {
     floats(CURSOR, vec!["set".into(), id.into()], &[x, y, 0.0, 0.0, 0.0])
 }
 
 /// `set s_id x y a w h f X Y A m r`.
-pub fn blob(id: i32, x: f32, y: f32, w: f32, h: f32) -> OscPacket {
+pub(crate) fn blob(id: i32, x: f32, y: f32, w: f32, h: f32) -> OscPacket {
     let numbers = [x, y, 0.0, w, h, w * h, 0.0, 0.0, 0.0, 0.0, 0.0];
     floats(BLOB, vec!["set".into(), id.into()], &numbers)
 }
 
 /// `set s_id i_id x y a X Y A m r`.
-pub fn object(id: i32, marker: i32, x: f32, y: f32) -> OscPacket {
+pub(crate) fn object(id: i32, marker: i32, x: f32, y: f32) -> OscPacket {
     let head = vec!["set".into(), id.into(), marker.into()];
     floats(OBJECT, head, &[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
 /// A message of `head` and then floats.
-pub fn floats(address: &str, mut head: Vec<OscType>, numbers: &[f32]) -> OscPacket {
+pub(crate) fn floats(address: &str, mut head: Vec<OscType>, numbers: &[f32]) -> OscPacket {
     head.extend(numbers.iter().map(|number| OscType::Float(*number)));
     message(address, head)
 }
 
 /// A frame of cursors: source (unless empty), alive, set of all, fseq.
-pub fn cursors(name: &str, number: i32, down: &[(i32, f32, f32)]) -> Vec<u8> {
+pub(crate) fn cursors(name: &str, number: i32, down: &[(i32, f32, f32)]) -> Vec<u8> {
     let ids: Vec<i32> = down.iter().map(|(id, ..)| *id).collect();
     let mut content = Vec::new();
     if !name.is_empty() {
@@ -92,12 +92,12 @@ pub fn cursors(name: &str, number: i32, down: &[(i32, f32, f32)]) -> Vec<u8> {
 }
 
 /// `/tuio2/frm f_id time dim source`.
-pub fn frm(id: i32, name: &str) -> OscPacket {
+pub(crate) fn frm(id: i32, name: &str) -> OscPacket {
     let time = OscTime {
         seconds: 1,
         fractional: 0,
     };
-    let sensor = 1920 << 16 | 1080;
+    let sensor = 0x0780_0438; // 1920 by 1080
     message(
         "/tuio2/frm",
         vec![id.into(), OscType::Time(time), OscType::Int(sensor), name.into()],
@@ -105,28 +105,28 @@ pub fn frm(id: i32, name: &str) -> OscPacket {
 }
 
 /// `/tuio2/ptr s_id tu_id c_id x y angle shear radius press`.
-pub fn ptr(id: i32, x: f32, y: f32, radius: f32, press: f32) -> OscPacket {
+pub(crate) fn ptr(id: i32, x: f32, y: f32, radius: f32, press: f32) -> OscPacket {
     let head = vec![id.into(), 0.into(), 0.into()];
     floats("/tuio2/ptr", head, &[x, y, 0.0, 0.0, radius, press])
 }
 
 /// `/tuio2/tok s_id tu_id c_id x y angle`.
-pub fn tok(id: i32, x: f32, y: f32) -> OscPacket {
+pub(crate) fn tok(id: i32, x: f32, y: f32) -> OscPacket {
     floats("/tuio2/tok", vec![id.into(), 0.into(), 5.into()], &[x, y, 0.0])
 }
 
 /// `/tuio2/bnd s_id x y angle w h area`.
-pub fn bnd(id: i32, x: f32, y: f32, w: f32, h: f32) -> OscPacket {
+pub(crate) fn bnd(id: i32, x: f32, y: f32, w: f32, h: f32) -> OscPacket {
     floats("/tuio2/bnd", vec![id.into()], &[x, y, 0.0, w, h, w * h])
 }
 
 /// `/tuio2/alv s_id...`.
-pub fn alv(ids: &[i32]) -> OscPacket {
+pub(crate) fn alv(ids: &[i32]) -> OscPacket {
     message("/tuio2/alv", ids.iter().map(|id| OscType::Int(*id)).collect())
 }
 
 /// A frame of pointers.
-pub fn pointers(name: &str, id: i32, down: &[(i32, f32, f32)]) -> Vec<u8> {
+pub(crate) fn pointers(name: &str, id: i32, down: &[(i32, f32, f32)]) -> Vec<u8> {
     let ids: Vec<i32> = down.iter().map(|(id, ..)| *id).collect();
     let mut content = vec![frm(id, name)];
     content.extend(down.iter().map(|&(id, x, y)| ptr(id, x, y, 0.0, 0.5)));
@@ -135,26 +135,26 @@ pub fn pointers(name: &str, id: i32, down: &[(i32, f32, f32)]) -> Vec<u8> {
 }
 
 /// A port of this machine.
-pub fn peer(port: u16) -> SocketAddr {
+pub(crate) fn peer(port: u16) -> SocketAddr {
     SocketAddr::from(([127, 0, 0, 1], port))
 }
 
 /// A surface of 1000 mm by 500 mm with a decoder, and what is down by it.
-pub struct Table {
+pub(crate) struct Table {
     /// Under test.
-    pub decoder: TuioDecoder,
+    pub(crate) decoder: TuioDecoder,
     /// The contacts of each sender.
-    pub trackers: Vec<Tracker>,
+    pub(crate) trackers: Vec<Tracker>,
     /// All events.
-    pub events: Vec<ContactEvent>,
+    pub(crate) events: Vec<ContactEvent>,
     /// States so far.
-    pub states: usize,
+    pub(crate) states: usize,
     /// Senders found so far.
-    pub found: usize,
+    pub(crate) found: usize,
     /// Senders lost so far.
-    pub lost: usize,
+    pub(crate) lost: usize,
     /// The last state.
-    pub last: Vec<Touching>,
+    pub(crate) last: Vec<Touching>,
 }
 
 impl Default for Table {
@@ -178,17 +178,17 @@ impl Default for Table {
 
 impl Table {
     /// A packet from the first port.
-    pub fn hear(&mut self, t_us: u64, bytes: &[u8]) {
+    pub(crate) fn hear(&mut self, t_us: u64, bytes: &[u8]) {
         self.hear_from(t_us, 5000, bytes);
     }
 
     /// A packet from a port of this machine.
-    pub fn hear_from(&mut self, t_us: u64, port: u16, bytes: &[u8]) {
+    pub(crate) fn hear_from(&mut self, t_us: u64, port: u16, bytes: &[u8]) {
         self.with(|decoder, sink| decoder.packet(t_us, peer(port), bytes, &mut |event| sink(event)));
     }
 
     /// Time passes.
-    pub fn tick(&mut self, t_us: u64) {
+    pub(crate) fn tick(&mut self, t_us: u64) {
         self.with(|decoder, sink| decoder.tick(t_us, &mut |event| sink(event)));
     }
 
@@ -222,13 +222,13 @@ impl Table {
     }
 
     /// Ids that are down, over all senders.
-    pub fn down(&self) -> Vec<u64> {
+    pub(crate) fn down(&self) -> Vec<u64> {
         let contacts = self.trackers.iter().flat_map(Tracker::contacts);
         contacts.map(|contact| contact.key.id).collect()
     }
 
     /// Where the contact of this id is, mm.
-    pub fn place(&self, id: u64) -> Option<DVec2> {
+    pub(crate) fn place(&self, id: u64) -> Option<DVec2> {
         let mut contacts = self.trackers.iter().flat_map(Tracker::contacts);
         contacts
             .find(|contact| contact.key.id == id)

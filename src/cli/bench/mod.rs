@@ -3,6 +3,7 @@
 #[cfg(feature = "app")]
 mod frames;
 mod globe;
+mod tuio;
 
 use std::time::Instant;
 
@@ -77,6 +78,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         bench.folds()?;
         bench.picture()?;
         bench.globe()?;
+        bench.tuio();
         #[cfg(feature = "app")]
         bench.frames();
         Ok(bench.rows)

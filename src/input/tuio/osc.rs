@@ -293,8 +293,8 @@ mod tests {
     #[test]
     fn an_array_takes_no_depth() {
         let mut bytes = b"/a\0\0,".to_vec();
-        bytes.extend([b'['; 30_000]);
-        bytes.extend([b']'; 30_002]);
+        bytes.extend(std::iter::repeat_n(b'[', 30_000));
+        bytes.extend(std::iter::repeat_n(b']', 30_002));
         bytes.push(0);
         assert_eq!(lines(&bytes), (vec!["[47, 97] []".to_owned()], Ok(())));
     }
