@@ -213,7 +213,7 @@ fn a_blob_around_a_finger_is_that_finger() {
     let fingers = [(1, 0.1, 0.1), (2, 0.5, 0.5), (3, 0.52, 0.5)];
     let outlines = [(11, 0.101, 0.1, 0.02), (12, 0.51, 0.5, 0.1), (13, 0.9, 0.9, 0.05)];
     table.hear(0, &say(&fingers, &outlines));
-    assert_eq!(table.down(), [1, 2, 3, 2 << 32 | 13]);
+    assert_eq!(table.down(), [1, 2, 3, (2 << 32) + 13]);
     let sizes: Vec<_> = table.last.iter().map(|t| t.size_mm.map(DVec2::round)).collect();
     let mm = |size| Some(DVec2::splat(size));
     assert_eq!(sizes, [mm(20.0), None, None, mm(50.0)]);
