@@ -51,6 +51,10 @@ pub(crate) fn tuio_import(bytes: &[u8]) {
 /// Packets of TUIO, each behind its length (two bytes), the time since the last one (a byte, whose square counts in
 /// milliseconds) and its port (a byte): states are within the caps, their events well formed, and a minute after the
 /// last packet nothing is down.
+#[allow(
+    clippy::default_trait_access,
+    reason = "the fuzz targets do not depend on the crate of the type"
+)]
 pub(crate) fn tuio(mut bytes: &[u8]) {
     let mut decoder = TuioDecoder::new(TuioOptions {
         surface_mm: Some([1000.0, 500.0].into()),
