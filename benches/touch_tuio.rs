@@ -48,11 +48,13 @@ fn pointers(count: i32, step: i32) -> Vec<u8> {
     encoder::encode(&OscPacket::Bundle(OscBundle { timetag, content })).expect("a packet")
 }
 
+/// Writes a frame of so many contacts.
+type Writer = fn(i32, i32) -> Vec<u8>;
+
 fn bundle(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("tuio");
     group.throughput(Throughput::Elements(1));
-    let kinds: [(&str, fn(i32, i32) -> Vec<u8>); 2] = [("1.1", cursors), ("2.0", pointers)];
-    for (name, packet) in kinds {
+    for (name, packet) in [("1.1", cursors as Writer), ("2.0", pointers)] {
         for count in [10, 40, 256] {
             let packets: Vec<_> = (0..64).map(|step| packet(count, step)).collect();
             let peer = SocketAddr::from(([127, 0, 0, 1], 5000));
