@@ -1,17 +1,19 @@
 //! What must hold for any bytes: run by the fuzz targets, and by `tests/fuzz_regressions.rs` on what they once found.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use orogen::gesture::command::Command;
-use orogen::gesture::contact::{ContactEvent, InputFrame, Source};
+use orogen::gesture::contact::{ContactEvent, InputFrame, MAX_CONTACTS, Phase, Source};
 use orogen::gesture::file::{GestureFile, Header, read_gesture};
 use orogen::gesture::hand::HandTracker;
 use orogen::gesture::params::GestureParams;
 use orogen::input::import::{
-    ImportError, ImportOptions, Imported, import_evemu, import_hid_recorder, import_libinput,
+    ImportError, ImportOptions, Imported, import_evemu, import_hid_recorder, import_libinput, import_tuio,
 };
 use orogen::input::planet::{Colours, HEIGHT_RANGE_M, Heights};
+use orogen::input::touching::Tracker;
+use orogen::input::tuio::{MAX_SOURCES, TuioDecoder, TuioEvent, TuioOptions};
 use orogen::rock::Stratigraphy;
 use orogen::settings::Settings;
 use orogen::sphere::Lattice;
@@ -44,6 +46,58 @@ pub(crate) fn libinput_import(bytes: &[u8]) {
 /// The same of hid-recorder.
 pub(crate) fn hid_recorder_import(bytes: &[u8]) {
     imported(|options| import_hid_recorder(bytes, "fuzz", options));
+}
+
+/// The same of captures of TUIO.
+pub(crate) fn tuio_import(bytes: &[u8]) {
+    imported(|options| import_tuio(bytes, "fuzz", options));
+}
+
+/// Packets of TUIO, each behind its length (two bytes), the time since the last one (a byte, whose square counts in
+/// milliseconds) and its port (a byte): states are within the caps, their events well formed, and a minute after the
+/// last packet nothing is down.
+#[allow(
+    clippy::default_trait_access,
+    reason = "the fuzz targets do not depend on the crate of the type"
+)]
+pub(crate) fn tuio(mut bytes: &[u8]) {
+    let mut decoder = TuioDecoder::new(TuioOptions {
+        surface_mm: Some([1000.0, 500.0].into()),
+    });
+    let tracker = |device| Tracker::new(Source::Tuio, device, Default::default());
+    let mut trackers: Vec<Tracker> = (0..MAX_SOURCES as u16).map(tracker).collect();
+    let (mut events, mut down) = (Vec::new(), BTreeSet::new());
+    let mut take = |event: TuioEvent<'_>| {
+        match event {
+            TuioEvent::Found { source, .. } => {
+                assert_eq!(trackers[usize::from(source)].contacts().count(), 0);
+            }
+            TuioEvent::State { source, touching } => {
+                assert!(touching.len() <= MAX_CONTACTS);
+                trackers[usize::from(source)].frame(touching, &mut events);
+            }
+            TuioEvent::Lost { source } => trackers[usize::from(source)].cancel_all(&mut events),
+        }
+        for event in events.drain(..) {
+            let key = event.contact.key;
+            assert!(match event.phase {
+                Phase::Down => down.insert(key),
+                Phase::Move => down.contains(&key),
+                Phase::Up | Phase::Cancel => down.remove(&key),
+            });
+        }
+    };
+    let mut t_us = 0;
+    while let Some(([high, low, wait, port], rest)) = bytes.split_first_chunk() {
+        let length = usize::from(u16::from_be_bytes([*high, *low])).min(rest.len());
+        let (packet, after) = rest.split_at(length);
+        bytes = after;
+        t_us += u64::from(*wait).pow(2) * 1000;
+        decoder.packet(t_us, ([127, 0, 0, 1], u16::from(*port)).into(), packet, &mut take);
+        assert!(decoder.sources().count() <= MAX_SOURCES);
+    }
+    decoder.tick(t_us + 61_000_000, &mut take);
+    assert_eq!(down.len(), 0, "contacts that nobody lifts");
 }
 
 /// What is imported is a gesture file, and plays.

@@ -49,6 +49,16 @@ fn libinput_import() {
 }
 
 #[test]
+fn tuio() {
+    assert!(replay("tuio", checks::tuio) >= 3);
+}
+
+#[test]
+fn tuio_import() {
+    assert!(replay("tuio_import", checks::tuio_import) >= 2);
+}
+
+#[test]
 fn settings() {
     assert!(replay("settings", checks::settings) >= 2);
 }
@@ -78,7 +88,9 @@ fn hid_report() {
 fn seeds_are_read() {
     use orogen::gesture::file::read_gesture;
     use orogen::input::hid::Descriptor;
-    use orogen::input::import::{ImportOptions, import_evemu, import_hid_recorder, import_libinput};
+    use orogen::input::import::{
+        ImportOptions, import_evemu, import_hid_recorder, import_libinput, import_tuio,
+    };
     use orogen::input::planet::{Colours, Heights};
     use orogen::settings::Settings;
 
@@ -117,4 +129,9 @@ fn seeds_are_read() {
     let path = seeds.join("libinput_import/two_devices.yml");
     let imported = import_libinput(fs::File::open(path).unwrap(), "yml", &options).unwrap();
     assert!(imported.frames.len() >= 3);
+    for name in ["times.jsonl", "list.json"] {
+        let path = seeds.join("tuio_import").join(name);
+        let imported = import_tuio(fs::File::open(path).unwrap(), name, &options).unwrap();
+        assert!(imported.frames.len() >= 3);
+    }
 }

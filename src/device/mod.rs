@@ -4,6 +4,7 @@
 pub mod hid;
 #[cfg(target_os = "linux")]
 pub mod hidraw;
+pub mod tuio;
 
 use std::collections::VecDeque;
 use std::fmt;

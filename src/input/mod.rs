@@ -7,4 +7,5 @@ pub mod maps;
 pub mod pile;
 pub mod planet;
 pub mod touching;
+pub mod tuio;
 pub mod window;

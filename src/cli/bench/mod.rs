@@ -4,6 +4,7 @@
 mod frames;
 mod globe;
 mod touch;
+mod tuio;
 
 use std::time::Instant;
 
@@ -79,6 +80,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         bench.picture()?;
         bench.globe()?;
         bench.touch()?;
+        bench.tuio();
         #[cfg(feature = "app")]
         bench.frames();
         Ok(bench.rows)

@@ -14,12 +14,14 @@ pub enum Recorder {
     HidRecorder,
     /// `libinput record`.
     Libinput,
+    /// A capture of TUIO.
+    Tuio,
 }
 
 impl Recorder {
     /// All of them, in words.
     pub(super) const UNDERSTOOD: &str = "a recording of evemu-record (N:, A:, E: lines), libinput record (YAML with \
-        version: and devices:) or hid-recorder (R:, E: lines)";
+        version: and devices:) or hid-recorder (R:, E: lines), or a capture of TUIO (JSON with hex)";
 
     /// The tool whose recording begins with `head`.
     ///
@@ -43,6 +45,9 @@ impl Recorder {
 
     /// What one line tells.
     fn by_line(line: &str) -> Option<Self> {
+        if line.starts_with('[') || line.starts_with('{') && line.contains("\"hex\"") {
+            return Some(Self::Tuio);
+        }
         let (key, rest) = line.split_once(':')?;
         let words: Vec<&str> = rest.split_whitespace().collect();
         match (key, &words[..]) {

@@ -5,8 +5,8 @@ use std::io::{BufRead, BufReader, Read};
 
 use super::ImportFault;
 
-/// Most bytes of a line: the longest report descriptor, 4096 bytes, takes three for each of them.
-pub const MAX_LINE_BYTES: usize = 16 * 1024;
+/// Most bytes of a line: the longest packet of TUIO, 64 KiB, takes two for each of them, and some more to say when.
+pub const MAX_LINE_BYTES: usize = 160 * 1024;
 
 /// Most lines of a recording: an hour and a half of ten fingers.
 pub const MAX_LINES: usize = 4_000_000;

@@ -5,6 +5,7 @@
 //! | `evemu-record` | [`evemu`] | the kernel's events, protocols A and B |
 //! | `hid-recorder` | [`hid_recorder`] | the bytes that devices sent |
 //! | `libinput record` | [`libinput`] | the same, in YAML, of several devices |
+//! | captures of TUIO | [`tuio`] | the packets that trackers sent |
 //!
 //! [`import_recording`] finds out which tool wrote a recording; nothing else does, names of files least of all. Every
 //! importer takes any bytes, and refuses what it does not understand in one line that names file and line.
@@ -18,6 +19,7 @@ pub mod hid_recorder;
 pub mod libinput;
 mod lines;
 mod time;
+pub mod tuio;
 
 use std::io::Read;
 
@@ -33,6 +35,7 @@ pub use fault::{ImportError, ImportFault};
 pub use hid_recorder::import_hid_recorder;
 pub use libinput::import_libinput;
 pub use lines::{MAX_LINE_BYTES, MAX_LINES};
+pub use tuio::import_tuio;
 
 /// Bytes from which it is told which tool wrote a recording: the longest description of a device fits twice.
 const HEAD_BYTES: u64 = 64 * 1024;
@@ -101,6 +104,7 @@ pub fn import_recording<R: Read>(
         Recorder::Evemu => import_evemu(whole, name, options),
         Recorder::HidRecorder => import_hid_recorder(whole, name, options),
         Recorder::Libinput => import_libinput(whole, name, options),
+        Recorder::Tuio => import_tuio(whole, name, options),
     }
 }
 
