@@ -76,6 +76,9 @@ fn value_of(key: &Key) -> BoxedStrategy<Value> {
             .prop_map(|word| Value::Text(word.to_owned()))
             .boxed(),
         Domain::Pin => "[0-9]{4,8}".prop_map(Value::Text).boxed(),
+        Domain::Text(form) => prop::sample::select(vec!["", form.example()])
+            .prop_map(|text| Value::Text(text.to_owned()))
+            .boxed(),
         Domain::Path => r"[^\x00-\x1f\x7f-\x9f]{0,20}".prop_map(Value::Text).boxed(),
     }
 }

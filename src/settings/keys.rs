@@ -1,6 +1,7 @@
 //! The one table of keys: name, help, what is allowed, and where in [`Settings`] it lives.
 
-use super::{Corner, Orientation, PIN_DIGITS, Settings, Tools};
+use super::form::{Form, addresses, affine, affine_text};
+use super::{Corner, Listen, Orientation, PIN_DIGITS, Settings, Tools};
 use crate::gesture::command::Mode;
 
 /// Unit, range and step of a number.
@@ -33,6 +34,8 @@ pub enum Domain {
     Pin,
     /// A path, or an empty text for none.
     Path,
+    /// A text of a certain form.
+    Text(Form),
 }
 
 /// The value of a key.
@@ -44,7 +47,7 @@ pub enum Value {
     Word,
     /// Of [`Domain::Switch`].
     Switch(bool),
-    /// Of [`Domain::Choice`], [`Domain::Pin`] and [`Domain::Path`].
+    /// Of [`Domain::Choice`], [`Domain::Pin`], [`Domain::Path`] and [`Domain::Text`].
     Text(String),
 }
 
@@ -87,6 +90,7 @@ impl Key {
                 (PIN_DIGITS.0..=PIN_DIGITS.1).contains(&pin.len()) && pin.bytes().all(|b| b.is_ascii_digit())
             }
             (Domain::Path, Value::Text(path)) => !path.chars().any(char::is_control),
+            (Domain::Text(form), Value::Text(text)) => form.admits(text),
             _ => false,
         }
     }
@@ -112,6 +116,7 @@ impl Key {
             }
             Domain::Pin => format!("{} to {} digits in quotes", PIN_DIGITS.0, PIN_DIGITS.1),
             Domain::Path => "a path in quotes".to_owned(),
+            Domain::Text(form) => form.expected().to_owned(),
         }
     }
 }
@@ -148,6 +153,14 @@ const NODES: Bound = Bound {
     whole: true,
 };
 
+const PORT: Bound = Bound {
+    unit: "1",
+    min: 1024.0,
+    max: 65_535.0,
+    step: 1.0,
+    whole: true,
+};
+
 /// The first of each pair.
 const fn names<T: Copy, const N: usize>(table: &[(&'static str, T); N]) -> [&'static str; N] {
     let mut names = [""; N];
@@ -161,6 +174,7 @@ const fn names<T: Copy, const N: usize>(table: &[(&'static str, T); N]) -> [&'st
 
 const ORIENTATIONS: [&str; 8] = names(&Orientation::ALL);
 const CORNERS: [&str; 4] = names(&Corner::ALL);
+const SOURCES: [&str; 4] = names(&Listen::ALL);
 const TOOLS: [&str; 3] = names(&Tools::ALL);
 
 fn name_of<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> Value {
@@ -250,11 +264,82 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         section: "table",
+        name: "calibration",
+        help: "What four touches at the staff menu's crosses have shown; empty for none.",
+        domain: Domain::Text(Form::Affine),
+        get: |s| Value::Text(s.table.calibration.map_or_else(String::new, affine_text)),
+        set: |s, v| {
+            if let Value::Text(text) = v {
+                s.table.calibration = affine(text);
+            }
+        },
+    },
+    Key {
+        section: "table",
         name: "short_side_km",
         help: "Ground that lies along the short side of the table.",
         domain: Domain::Number(bound("km", 20.0, 500.0, 5.0)),
         get: |s| Value::Number(s.table.short_side_km),
         set: |s, v| set_number(&mut s.table.short_side_km, v),
+    },
+    Key {
+        section: "input",
+        name: "source",
+        help: "Where touches come from: \"window\", \"hid\", \"tuio\"; \"auto\" takes the best that speaks, never two at once.",
+        domain: Domain::Choice(&SOURCES),
+        get: |s| name_of(&Listen::ALL, &s.input.source),
+        set: |s, v| set_named(&Listen::ALL, &mut s.input.source, v),
+    },
+    Key {
+        section: "input",
+        name: "surface_width_mm",
+        help: "Width of a raw touchscreen's surface, where it tells none or a wrong one.",
+        domain: Domain::NumberOr(bound("mm", 50.0, 5000.0, 0.1), "auto"),
+        get: |s| number_or(s.input.surface_mm[0]),
+        set: |s, v| set_number_or(&mut s.input.surface_mm[0], v),
+    },
+    Key {
+        section: "input",
+        name: "surface_height_mm",
+        help: "Its height.",
+        domain: Domain::NumberOr(bound("mm", 50.0, 5000.0, 0.1), "auto"),
+        get: |s| number_or(s.input.surface_mm[1]),
+        set: |s, v| set_number_or(&mut s.input.surface_mm[1], v),
+    },
+    Key {
+        section: "input",
+        name: "tuio_port",
+        help: "UDP port on which TUIO is heard.",
+        domain: Domain::Number(PORT),
+        get: |s| Value::Number(s.input.tuio_port.into()),
+        set: |s, v| {
+            if let Value::Number(port) = v {
+                s.input.tuio_port = *port as u16;
+            }
+        },
+    },
+    Key {
+        section: "input",
+        name: "tuio_network",
+        help: "TUIO of other machines is heard, too: whoever reaches the port can draw.",
+        domain: Domain::Switch,
+        get: |s| Value::Switch(s.input.tuio_network),
+        set: |s, v| set_switch(&mut s.input.tuio_network, v),
+    },
+    Key {
+        section: "input",
+        name: "tuio_allow",
+        help: "Addresses of the machines whose TUIO is heard, with commas between; empty for all.",
+        domain: Domain::Text(Form::Addresses),
+        get: |s| {
+            let addresses = s.input.tuio_allow.iter().map(ToString::to_string);
+            Value::Text(addresses.collect::<Vec<_>>().join(", "))
+        },
+        set: |s, v| {
+            if let Value::Text(text) = v {
+                s.input.tuio_allow = addresses(text).unwrap_or_default();
+            }
+        },
     },
     Key {
         section: "land",
@@ -432,6 +517,7 @@ mod tests {
                 (Domain::Choice(words), _) => Value::Text(words[words.len() - 1].to_owned()),
                 (Domain::Pin, _) => Value::Text("00000000".to_owned()),
                 (Domain::Path, _) => Value::Text("a/b".to_owned()),
+                (Domain::Text(form), _) => Value::Text(form.example().to_owned()),
                 (domain, value) => panic!("{domain:?} with {value:?}"),
             };
             let mut settings = Settings::default();
@@ -470,6 +556,7 @@ mod tests {
                     .map(|pin| Value::Text(pin.to_owned()))
                     .to_vec(),
                 Domain::Path => vec![Value::Text("a\nb".to_owned())],
+                Domain::Text(_) => vec![Value::Text("a, b".to_owned()), Value::Number(1.0)],
             };
             for value in wrong {
                 assert!(!key.put(&mut settings, &value), "{} takes {value:?}", key.path());

@@ -10,14 +10,18 @@
 //!
 //! No file is opened here.
 
+mod form;
 mod keys;
 mod read;
 mod write;
 
+pub use form::Form;
 pub use keys::{Bound, Domain, KEYS, Key, Value};
 pub use read::SettingsError;
 
-use glam::DVec2;
+use std::net::IpAddr;
+
+use glam::{DAffine2, DMat2, DVec2};
 
 use crate::gesture::command::Mode;
 use crate::units::{KM, PlanMap};
@@ -41,6 +45,8 @@ pub struct Settings {
     pub mode: Mode,
     /// The table's frame.
     pub table: TableSettings,
+    /// Where touches come from.
+    pub input: InputSettings,
     /// What new land is made of.
     pub land: LandSettings,
     /// The circle of an unattended table.
@@ -64,8 +70,39 @@ pub struct TableSettings {
     pub height_mm: Option<f64>,
     /// How the touch device lies on the picture.
     pub orientation: Orientation,
+    /// What the orientation leaves, as four touches have shown it: parts of the surface → parts of the picture.
+    pub calibration: Option<DAffine2>,
     /// Ground along the table's short side, km.
     pub short_side_km: f64,
+}
+
+/// `[input]`: where touches come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InputSettings {
+    /// The one source that is listened to.
+    pub source: Listen,
+    /// Width and height of the surface of raw touchscreens, mm; `None`: as they tell.
+    pub surface_mm: [Option<f64>; 2],
+    /// UDP port of TUIO.
+    pub tuio_port: u16,
+    /// TUIO of other machines is heard, too.
+    pub tuio_network: bool,
+    /// Machines whose TUIO is heard; none: all that reach the port.
+    pub tuio_allow: Vec<IpAddr>,
+}
+
+/// Which source of touches is listened to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Listen {
+    /// The best of those that speak: raw touchscreens, else TUIO, else the window system.
+    #[default]
+    Auto,
+    /// The window system.
+    Window,
+    /// Raw HID touchscreens.
+    Hid,
+    /// TUIO.
+    Tuio,
 }
 
 /// `[land]`: what new land is made of.
@@ -175,7 +212,15 @@ impl Default for Settings {
                 width_mm: 1209.6,
                 height_mm: None,
                 orientation: Orientation::default(),
+                calibration: None,
                 short_side_km: 100.0,
+            },
+            input: InputSettings {
+                source: Listen::Auto,
+                surface_mm: [None; 2],
+                tuio_port: 3333,
+                tuio_network: false,
+                tuio_allow: Vec::new(),
             },
             land: LandSettings {
                 layers: "plain".to_owned(),
@@ -235,6 +280,16 @@ impl Tools {
     }
 }
 
+impl Listen {
+    /// All, with their names in the file.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("auto", Self::Auto),
+        ("window", Self::Window),
+        ("hid", Self::Hid),
+        ("tuio", Self::Tuio),
+    ];
+}
+
 impl Orientation {
     /// All eight, with their names in the file.
     pub const ALL: [(&'static str, Self); 8] = [
@@ -254,6 +309,13 @@ impl Orientation {
             quarter_turns: quarter_turns % 4,
             mirrored,
         }
+    }
+
+    /// [`Self::apply`] as a map.
+    pub fn affine(self) -> DAffine2 {
+        let origin = self.apply(DVec2::ZERO);
+        let axis = |end| self.apply(end) - origin;
+        DAffine2::from_mat2_translation(DMat2::from_cols(axis(DVec2::X), axis(DVec2::Y)), origin)
     }
 
     /// A place on the device on the picture; both are in parts of their size, x right, y down, 0 to 1.

@@ -97,7 +97,7 @@ impl StaffPanel {
                 .inner
             }
             (Domain::Pin, Value::Text(pin)) => self.pin(ui, key, pin, scale),
-            (Domain::Path, Value::Text(path)) => text_field(ui, key, path, &label),
+            (Domain::Path | Domain::Text(_), Value::Text(text)) => text_field(ui, key, text, &label),
             // A value of another kind than its key's: shown, and left alone.
             _ => {
                 ui.label(key.expected());

@@ -109,6 +109,7 @@ fn section_name(section: &'static str) -> &'static str {
     match section {
         "" => "World",
         "table" => "Table",
+        "input" => "Touch",
         "land" => "Land",
         "kiosk" => "Visits",
         "staff" => "Staff",
