@@ -163,6 +163,7 @@ type Row = (&'static str, u64, u64, usize, f64, f64);
 const GOLDEN: &[Row] = &[
     ("builtin_session", 4, 0, 5, 2.2, -0.2),
     ("cancel", 1, 0, 1, 1.5, -0.1),
+    ("confidence_lost", 0, 0, 0, 0.2, -0.1),
     ("drumming", 0, 16, 0, 0.6, -0.1),
     ("finished_range_eroding", 1, 0, 2, 0.5, -0.1),
     ("flicker", 1, 0, 1, 1.7, -0.1),
@@ -175,6 +176,7 @@ const GOLDEN: &[Row] = &[
     ("oblique_push", 1, 0, 2, 2.1, -0.1),
     ("one_finger_push", 1, 0, 1, 1.7, -0.1),
     ("palm_and_sleeve", 1, 0, 1, 1.4, -0.1),
+    ("palm_flickers", 1, 3, 1, 1.5, -0.1),
     ("palm_only", 0, 0, 0, 0.2, -0.1),
     ("pinch_and_spread", 4, 0, 4, 1.2, -0.1),
     ("pull_apart", 2, 0, 2, 1.9, -0.2),
@@ -186,6 +188,7 @@ const GOLDEN: &[Row] = &[
     ("range_zagros", 3, 0, 6, 1.9, -0.2),
     ("rubbing", 7, 0, 1, 1.8, -0.1),
     ("same_push_again", 2, 0, 1, 1.4, -0.1),
+    ("sleeve_sweeps", 0, 0, 0, 0.2, -0.1),
     ("slapping", 0, 2, 0, 0.2, -0.1),
     ("slow_and_fast", 2, 0, 2, 1.3, -0.1),
     ("stuck_contact", 2, 0, 3, 1.6, -0.1),

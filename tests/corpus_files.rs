@@ -29,9 +29,10 @@ const BORDER_MM: f64 = 82.0;
 /// When a rule of the gesture grammar or a scene changes, `every_file_comes_to_its_hands` prints the line that it
 /// found. Take it over only after having read, line by line, why it is what the grammar says; a line that cannot be
 /// explained is a fault of the grammar's code.
-const GOLDEN: [(&str, [u64; 5]); 36] = [
+const GOLDEN: [(&str, [u64; 5]); 39] = [
     ("builtin_session", [5, 4, 1, 0, 0]),
     ("cancel", [1, 1, 0, 0, 1]),
+    ("confidence_lost", [0, 0, 0, 0, 1]),
     ("drumming", [16, 0, 0, 16, 0]),
     ("finished_range_eroding", [2, 1, 1, 0, 0]),
     ("flicker", [1, 1, 0, 0, 0]),
@@ -44,6 +45,7 @@ const GOLDEN: [(&str, [u64; 5]); 36] = [
     ("oblique_push", [2, 1, 1, 0, 0]),
     ("one_finger_push", [1, 1, 0, 0, 0]),
     ("palm_and_sleeve", [2, 1, 0, 0, 2]),
+    ("palm_flickers", [4, 1, 0, 3, 33]),
     ("palm_only", [2, 0, 0, 0, 3]),
     ("pinch_and_spread", [4, 4, 0, 0, 0]),
     ("planet_collide_and_tear", [6, 5, 3, 0, 0]),
@@ -57,6 +59,7 @@ const GOLDEN: [(&str, [u64; 5]); 36] = [
     ("range_zagros", [6, 3, 3, 0, 0]),
     ("rubbing", [1, 7, 0, 0, 0]),
     ("same_push_again", [2, 2, 0, 0, 0]),
+    ("sleeve_sweeps", [0, 0, 0, 0, 1]),
     ("slapping", [2, 0, 0, 2, 2]),
     ("slow_and_fast", [2, 2, 1, 0, 0]),
     ("stuck_contact", [3, 2, 1, 0, 0]),

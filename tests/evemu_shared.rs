@@ -91,6 +91,10 @@ fn round_trip_and_play(imported: Imported) -> HandTracker {
     hands.finish(end_us);
     hands.sanity_check().expect("whole hands");
     assert_eq!(hands.hands().count(), 0);
+    // Fingers are fingers: none is lost as a palm, a ghost or a flicker.
+    let stats = hands.stats();
+    let lost = (stats.dropped_ghosts, stats.retracted, stats.bridged, stats.stuck);
+    assert_eq!(lost, (0, 0, 0, 0), "{stats:?}");
     hands
 }
 

@@ -1,6 +1,7 @@
 //! What is exported to evemu comes back as it was.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use glam::DVec2;
 use orogen::export::evemu::write_evemu;
@@ -241,7 +242,7 @@ fn ways(frames: &[InputFrame]) -> Vec<String> {
                 contact.size_mm,
                 contact.confidence,
             );
-            way.push_str(&format!("{told:?} "));
+            write!(way, "{told:?} ").expect("memory takes all");
         }
     }
     let mut ways: Vec<String> = open.into_values().collect();

@@ -12,7 +12,7 @@ const SIZE_MM: DVec2 = DVec2::new(1200.0, 675.0);
 const WINDOW_PX: DVec2 = DVec2::new(1280.0, 720.0);
 
 fn map(orientation: Orientation) -> WindowMap {
-    WindowMap::new(WINDOW_PX, (DVec2::ZERO, WINDOW_PX), SIZE_MM, orientation)
+    WindowMap::new(WINDOW_PX, (DVec2::ZERO, WINDOW_PX), SIZE_MM, orientation, None)
 }
 
 fn table() -> (WindowInput, Vec<ContactEvent>) {
@@ -45,7 +45,7 @@ fn a_touch_becomes_a_contact_in_millimetres_on_the_raster_of_files() {
 #[test]
 fn land_beside_bars_is_measured_from_its_own_corner() {
     let land = (DVec2::new(100.0, 60.0), DVec2::new(1080.0, 607.5));
-    let map = WindowMap::new(WINDOW_PX, land, SIZE_MM, Orientation::default());
+    let map = WindowMap::new(WINDOW_PX, land, SIZE_MM, Orientation::default(), None);
     let mut input = WindowInput::new(map);
     let mut out = Vec::new();
     input.touch(ONE, TouchPhase::Started, land.0, 0, &mut out);

@@ -70,7 +70,14 @@ pub(super) fn layers(options: &Options, settings: &Settings) -> Result<Arc<Strat
 /// How the window's pixels lie on the table.
 pub(super) fn window_map(settings: &Settings, map: &PlanMap, size_px: DVec2) -> WindowMap {
     let land_px = plan_rect(map.extent(), size_px);
-    WindowMap::new(size_px, land_px, map.size_mm(), settings.table.orientation)
+    let table = &settings.table;
+    WindowMap::new(
+        size_px,
+        land_px,
+        map.size_mm(),
+        table.orientation,
+        table.calibration,
+    )
 }
 
 /// What the instrument is made for.

@@ -5,6 +5,7 @@
 //! lifted; a frame that was lost is healed by the next one.
 
 use std::collections::BTreeMap;
+use std::ops::AddAssign;
 
 use glam::{DAffine2, DVec2};
 
@@ -36,6 +37,15 @@ pub struct TrackerCounts {
     pub doubled: u64,
     /// Contacts that were withdrawn with their device.
     pub withdrawn: u64,
+}
+
+impl AddAssign for TrackerCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.no_place += other.no_place;
+        self.over_cap += other.over_cap;
+        self.doubled += other.doubled;
+        self.withdrawn += other.withdrawn;
+    }
 }
 
 /// The contacts of one device: states in, events out. The events are well formed whatever the states are: each

@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DAffine2, DMat2, DVec2};
+use glam::{DAffine2, DVec2};
 
 use crate::gesture::contact::{
     Contact, ContactEvent, ContactKey, MAX_CONTACTS, MAX_COORDINATE_MM, Phase, Source, quantise_mm,
@@ -50,25 +50,44 @@ pub struct WindowMap {
     touch: DAffine2,
     /// Pointer pixels → table mm. Pointers are moved by eye, so they are never turned.
     pointer: DAffine2,
+    /// Parts of a touching surface that covers the window → table mm.
+    surface: DAffine2,
+    /// Parts of the window → table mm.
+    window: DAffine2,
 }
 
 impl WindowMap {
     /// The map of a window of `window_px` whose land fills the rectangle from `land_px.0`, of size `land_px.1`, and
-    /// shows a table of `size_mm`. A touch device that lies on the window turned is turned back.
-    pub fn new(window_px: DVec2, land_px: (DVec2, DVec2), size_mm: DVec2, orientation: Orientation) -> Self {
+    /// shows a table of `size_mm`. A touch device that lies on the window turned is turned back, and then brought to
+    /// its place by `calibration` (parts of the window).
+    pub fn new(
+        window_px: DVec2,
+        land_px: (DVec2, DVec2),
+        size_mm: DVec2,
+        orientation: Orientation,
+        calibration: Option<DAffine2>,
+    ) -> Self {
         let per_px = size_mm / land_px.1;
         let pointer = DAffine2::from_scale(per_px) * DAffine2::from_translation(-land_px.0);
-        let origin = orientation.apply(DVec2::ZERO);
-        let turn = DAffine2::from_mat2_translation(
-            DMat2::from_cols(
-                orientation.apply(DVec2::X) - origin,
-                orientation.apply(DVec2::Y) - origin,
-            ),
-            origin,
-        );
-        let touch =
-            pointer * DAffine2::from_scale(window_px) * turn * DAffine2::from_scale(DVec2::ONE / window_px);
-        Self { touch, pointer }
+        let window = pointer * DAffine2::from_scale(window_px);
+        let surface = window * calibration.unwrap_or(DAffine2::IDENTITY) * orientation.affine();
+        let touch = surface * DAffine2::from_scale(DVec2::ONE / window_px);
+        Self {
+            touch,
+            pointer,
+            surface,
+            window,
+        }
+    }
+
+    /// Parts of a touching surface (x right, y down) that covers the window → table mm.
+    pub fn surface(&self) -> DAffine2 {
+        self.surface
+    }
+
+    /// Parts of the window → table mm.
+    pub fn window(&self) -> DAffine2 {
+        self.window
     }
 }
 
@@ -134,6 +153,16 @@ impl WindowInput {
     /// Where the pointer is, table mm; `None` before it has moved and after it has left.
     pub fn pointer_mm(&self) -> Option<DVec2> {
         self.pointer
+    }
+
+    /// The map in use.
+    pub fn map(&self) -> &WindowMap {
+        &self.map
+    }
+
+    /// A touch that another source has told: the pointer that moves along is its shadow.
+    pub fn shadowed(&mut self, now_us: u64) {
+        self.last_touch_us = Some(now_us);
     }
 
     /// Another size, monitor or orientation. If that moves anything, all contacts are withdrawn.
@@ -241,6 +270,11 @@ impl WindowInput {
     pub fn cancel_all(&mut self, out: &mut Vec<ContactEvent>) {
         self.planted.clear();
         self.withdraw(|_| true, out);
+    }
+
+    /// Withdraws all touches: they are heard from another source. The mouse's stay.
+    pub fn withdraw_touches(&mut self, out: &mut Vec<ContactEvent>) {
+        self.withdraw(|slot| slot.0 == Source::Window, out);
     }
 
     /// Withdraws the touches of a device that is gone.

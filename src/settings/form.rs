@@ -74,6 +74,8 @@ pub(super) fn is_calibration(map: DAffine2) -> bool {
 /// The six numbers of a map.
 pub(super) fn affine_text(map: DAffine2) -> String {
     // (Six decimals are a thousandth of a millimetre.)
-    let numbers = map.to_cols_array().map(|number| (number * 1e6).round() / 1e6 + 0.0);
+    let numbers = map
+        .to_cols_array()
+        .map(|number| (number * 1e6).round() / 1e6 + 0.0);
     numbers.map(|number| number.to_string()).join(" ")
 }

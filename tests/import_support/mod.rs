@@ -1,6 +1,8 @@
 //! Recordings in short, and what became of them in short.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+use std::fmt::Write as _;
+
 use orogen::gesture::contact::{InputFrame, Phase};
 
 /// The head of a table of 400 × 300 mm with 10 units per mm.
@@ -62,10 +64,11 @@ pub(crate) fn as_libinput(evemu: &str, node: &str, properties: &str) -> String {
         let words: Vec<&str> = line.split_whitespace().collect();
         let hex = |word: &str| u16::from_str_radix(word, 16).expect("hexadecimal");
         match words[..] {
-            ["N:", ..] => name = line[2..].trim().to_owned(),
+            ["N:", ..] => line[2..].trim().clone_into(&mut name),
             ["A:", code, min, max, fuzz, flat, ref more @ ..] => {
                 let (code, resolution) = (hex(code), more.first().unwrap_or(&"0"));
-                axes += &format!("      {code}: [{min}, {max}, {fuzz}, {flat}, {resolution}]\n");
+                writeln!(axes, "      {code}: [{min}, {max}, {fuzz}, {flat}, {resolution}]")
+                    .expect("memory takes all");
             }
             ["E:", time, kind, code, value] => {
                 let (sec, usec) = time.split_once('.').expect("a time");
@@ -74,9 +77,11 @@ pub(crate) fn as_libinput(evemu: &str, node: &str, properties: &str) -> String {
                 if frame_ended {
                     events += "  - evdev:\n";
                 }
-                events += &format!(
-                    "    - [{sec:3}, {usec:6}, {kind:3}, {code:3}, {value:7}] # EV_ABS / as it is\n"
-                );
+                writeln!(
+                    events,
+                    "    - [{sec:3}, {usec:6}, {kind:3}, {code:3}, {value:7}] # EV_ABS / as it is"
+                )
+                .expect("memory takes all");
                 frame_ended = (kind, code) == (0, 0);
             }
             _ => {}

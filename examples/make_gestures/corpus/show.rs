@@ -47,6 +47,8 @@ pub(super) struct Finger {
     /// Width and height from a moment on, (ms, mm), where the device tells them.
     pub(super) sizes: Vec<(f64, DVec2)>,
     pub(super) confidence: Option<f32>,
+    /// When the screen begins to doubt that it is a finger, ms.
+    pub(super) doubted_ms: Option<f64>,
     /// True if it reports the very same place until it leaves.
     pub(super) frozen: bool,
 }
@@ -64,6 +66,7 @@ impl Finger {
             offset: DVec2::ZERO,
             sizes: Vec::new(),
             confidence: None,
+            doubted_ms: None,
             frozen: false,
         }
     }
@@ -312,13 +315,16 @@ fn sample(
             size_mm: finger
                 .size_at(t_ms)
                 .map(|size| DVec2::new(quantise_mm(size.x), quantise_mm(size.y))),
-            confidence: finger.confidence,
+            confidence: match finger.doubted_ms {
+                Some(doubted_ms) if t_ms >= doubted_ms => Some(0.0),
+                _ => finger.confidence,
+            },
         };
         let phase = match reported {
             None => Phase::Down,
             Some(old)
                 if old.position.distance(contact.position) < HYSTERESIS_MM
-                    && old.size_mm == contact.size_mm =>
+                    && (old.size_mm, old.confidence) == (contact.size_mm, contact.confidence) =>
             {
                 continue;
             }

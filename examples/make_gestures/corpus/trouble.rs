@@ -8,9 +8,12 @@ use super::expected::{rises, straight};
 use super::hand::{five, pose, pose_at};
 use super::show::{FRAME_MS, Finger, Show};
 
-pub(super) const SCENES: [Scene; 6] = [
+pub(super) const SCENES: [Scene; 9] = [
     ("palm_and_sleeve", palm_and_sleeve),
     ("palm_only", palm_only),
+    ("sleeve_sweeps", sleeve_sweeps),
+    ("confidence_lost", confidence_lost),
+    ("palm_flickers", palm_flickers),
     ("flicker", flicker),
     ("stuck_contact", stuck_contact),
     ("id_reuse", id_reuse),
@@ -76,6 +79,66 @@ fn palm_only() -> Show {
         (2032.0, DVec2::new(5.0, 3.0)),
     ];
     show.finger(drop);
+    show
+}
+
+fn sleeve_sweeps() -> Show {
+    let mut show = Show::new(
+        "a sleeve sweeps over the table",
+        "Nothing: what lands like a finger and has pushed before it is seen how large it is, is taken back.",
+    );
+    show.nothing();
+    let mut sleeve = Finger::new(vec![
+        pose(160.0, 330.0, 430.0),
+        pose(304.0, 470.0, 400.0),
+        pose(900.0, 900.0, 300.0),
+        pose(1000.0, 900.0, 300.0),
+    ]);
+    sleeve.sizes = [
+        (0.0, 11.0),
+        (64.0, 16.0),
+        (112.0, 22.0),
+        (160.0, 48.0),
+        (208.0, 90.0),
+    ]
+    .map(|(t_ms, size)| (160.0 + t_ms, DVec2::new(size, 0.6 * size)))
+    .to_vec();
+    show.finger(sleeve);
+    show
+}
+
+fn confidence_lost() -> Show {
+    let mut show = Show::new(
+        "a finger that turns out to be none",
+        "Nothing: within a quarter of a second the screen is no longer sure, and what was pushed is taken back.",
+    );
+    show.nothing();
+    let push = straight(160.0, 700.0, (520.0, 360.0), RIGHT * 140.0);
+    let (poses, _) = push.poses(&[DVec2::ZERO]);
+    let mut doubted = Finger::new(poses);
+    doubted.doubted_ms = Some(160.0 + 224.0);
+    show.finger(doubted);
+    show
+}
+
+fn palm_flickers() -> Show {
+    let mut show = Show::new(
+        "a palm that the screen cannot measure",
+        "One range before the hand; the palm beside it comes and goes, and after its first touches is none.",
+    );
+    let pushed = show.push(
+        &five(UP, 150.0),
+        straight(960.0, 1500.0, (800.0, 470.0), UP * 100.0),
+    );
+    for i in 0..36_u32 {
+        let lands_ms = 160.0 + 80.0 * f64::from(i);
+        // It wanders: three places, 3 mm apart.
+        let x = 330.0 + 3.0 * f64::from(i % 3);
+        let mut palm = Finger::new(vec![pose(lands_ms, x, 500.0), pose(lands_ms + 48.0, x, 500.0)]);
+        palm.id = Some(90);
+        show.finger(palm);
+    }
+    rises(&mut show, &pushed);
     show
 }
 
