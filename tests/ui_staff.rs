@@ -152,6 +152,7 @@ fn each_button_of_the_menu_does_what_it_says_and_grave_ones_ask_first() {
         ("Layers of rock", StaffAction::Layers),
         ("Save the last 60 s of touches", StaffAction::SaveContacts),
         ("Clean the table: 30 s without touch", StaffAction::Clean),
+        ("Calibrate touch at four crosses", StaffAction::Calibrate),
         ("Back to the table", StaffAction::Leave),
     ] {
         press(&mut harness, label);
@@ -303,6 +304,61 @@ fn doors() -> impl Strategy<Value = DoorPhase> {
     ]
 }
 
+/// Shows the panel at each of `phases`, whatever the numbers.
+fn show_all(
+    phases: &[DoorPhase],
+    numbers: [f64; 8],
+    (scale, points_per_mm): (f32, f32),
+    notice: Option<&str>,
+) {
+    let contacts: Vec<ContactHealth> = numbers
+        .iter()
+        .map(|&n| ContactHealth {
+            at_mm: DVec2::splat(n),
+            age_s: n,
+        })
+        .collect();
+    let health = Health {
+        version: "1",
+        adapter: "none",
+        uptime_s: numbers[0],
+        frame_ms: (numbers[1], numbers[2]),
+        touch_ms: (numbers[3], numbers[4]),
+        steps_per_s: numbers[5],
+        contacts: &contacts,
+        ..Health::default()
+    };
+    let settings = Settings::default();
+    let mut panel = StaffPanel::default();
+    let context = Context::default();
+    for &door in phases {
+        let view = StaffView {
+            door,
+            settings: &settings,
+            health: &health,
+            notice,
+            scale: scale_for(Vec2::splat(scale), points_per_mm),
+        };
+        let input = egui::RawInput {
+            screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, SCREEN)),
+            ..Default::default()
+        };
+        let mut output = context.run_pass(input, |context| {
+            let _ = panel.show(context, &view);
+        });
+        output.textures_delta.clear();
+    }
+}
+
+#[test]
+fn numbers_beyond_all_sense_are_shown() {
+    let numbers = [
+        -2.76e289, 0.0, -1.42e-235, 1.51e-242, 6.47e-309, -4.41e16, -7.37e-309, -3.32e174,
+    ];
+    let keypad = DoorPhase::Keypad { digits: 0, wrong: 0 };
+    show_all(&[keypad], numbers, (7.47e-24, -1.58e26), Some("*K?మ\u{c4116}"));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
@@ -314,36 +370,6 @@ proptest! {
         points_per_mm in any::<f32>(),
         notice in proptest::option::of(".{0,40}"),
     ) {
-        let contacts: Vec<ContactHealth> = numbers
-            .iter()
-            .map(|&n| ContactHealth { at_mm: DVec2::splat(n), age_s: n })
-            .collect();
-        let health = Health {
-            version: "1",
-            adapter: "none",
-            uptime_s: numbers[0],
-            frame_ms: (numbers[1], numbers[2]),
-            touch_ms: (numbers[3], numbers[4]),
-            steps_per_s: numbers[5],
-            contacts: &contacts,
-            ..Health::default()
-        };
-        let settings = Settings::default();
-        let mut panel = StaffPanel::default();
-        let context = Context::default();
-        for door in phases {
-            let view = StaffView {
-                door,
-                settings: &settings,
-                health: &health,
-                notice: notice.as_deref(),
-                scale: scale_for(Vec2::splat(scale), points_per_mm),
-            };
-            let input = egui::RawInput { screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, SCREEN)), ..Default::default() };
-            let mut output = context.run_pass(input, |context| {
-                let _ = panel.show(context, &view);
-            });
-            output.textures_delta.clear();
-        }
+        show_all(&phases, numbers, (scale, points_per_mm), notice.as_deref());
     }
 }
