@@ -29,7 +29,7 @@
 //! | `ui` | ink, controls and staff menu on top of the land (feature `app`) | worlds, window |
 //! | `app` | window, event loop, threads, metrics (feature `app`) | |
 //! | [`export`] | rasters, meshes, rivers → files, whole or not at all | worlds |
-//! | [`input`] | recordings of other tools, maps from files | worlds |
+//! | [`input`] | touch devices' bytes, TUIO, recordings of other tools → contacts; maps from files | worlds |
 //! | `device` | opens touch devices, each on a thread of its own (feature `app`) | window, worlds |
 //! | [`report`] | the facts of a run | clock, files |
 //! | [`cli`] | the commands; beside `app` and `device` the only place with a clock, and the only one with a terminal | |

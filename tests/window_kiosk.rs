@@ -146,6 +146,52 @@ fn visitors_cannot_leave_the_kiosk_and_staff_can() {
     assert_eq!(table.ended(15.0).code(), Some(0));
 }
 
+#[test]
+fn four_touches_calibrate_the_table_and_are_kept() {
+    let Some(mut table) = Table::in_play("four_touches_calibrate_the_table_and_are_kept", &Setup::default())
+    else {
+        return;
+    };
+    let before = table.settled();
+    let mut touch = Script::default();
+    touch.tap(0.0, 3.5, table.metrics.staff_corner());
+    table.play(&touch);
+    for digit in "2580".chars() {
+        tap(&mut table, &digit.to_string());
+    }
+    tap(&mut table, "Enter");
+    tap(&mut table, "Calibrate touch at four crosses");
+    table.look("cross");
+    // The touching surface lies to the left and lower.
+    let (dx, dy) = (-0.02, 0.015);
+    for (x, y) in [(0.1, 0.1), (0.9, 0.1), (0.9, 0.9), (0.1, 0.9)] {
+        let mut touch = Script::default();
+        touch.tap(0.0, 0.3, table.at(x + dx, y + dy));
+        table.play(&touch);
+        table.settled();
+    }
+    let settings = table.settings();
+    let line = settings.lines().find(|line| line.starts_with("calibration = "));
+    let text = line
+        .and_then(|line| line.split('"').nth(1))
+        .expect("a calibration");
+    let found: Vec<f64> = text
+        .split(' ')
+        .map(|number| number.parse().expect("a number"))
+        .collect();
+    let expected = [1.0, 0.0, 0.0, 1.0, -dx, -dy];
+    // (A pixel is 0.0014 of the height.)
+    assert!(
+        found.len() == 6 && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.004),
+        "{text}"
+    );
+    assert_eq!(
+        table.settled().contacts_total,
+        before.contacts_total,
+        "the crosses' touches sculpt nothing"
+    );
+}
+
 /// Taps a key of the keypad or a button of the menu.
 fn tap(table: &mut Table, label: &str) {
     let at = table.metrics.place(label, SLOW_S);

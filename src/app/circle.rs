@@ -39,6 +39,7 @@ impl Table {
     fn withdraw_contacts(&mut self, now_us: u64) {
         let mut events = Vec::new();
         self.input.cancel_all(&mut events);
+        self.stream.cancel_all(&mut events);
         for event in &events {
             self.worlds.send(vec![*event], Vec::new(), now_us);
             self.seen.push(Seen {

@@ -8,6 +8,7 @@ use winit::event::KeyEvent;
 use super::graphics::Overlay;
 use super::keys;
 use super::layers::Layers;
+use super::listen::{Listeners, word};
 use super::metrics::Health;
 use super::sheets::Sheets;
 use super::table::Table;
@@ -122,7 +123,7 @@ impl Hud {
         &mut self,
         table: &mut Table,
         settings: &Settings,
-        health: &Health,
+        (health, listeners): (&Health, &Listeners),
         size_px: [u32; 2],
         now_s: f64,
     ) -> Run {
@@ -150,7 +151,14 @@ impl Hud {
             layers = self
                 .layers
                 .show(context, table, staff::scale_for(screen.size(), per_mm as f32));
-            shown = self.panels(context, table, settings, health, screen, per_mm as f32);
+            shown = self.panels(
+                context,
+                table,
+                settings,
+                (health, listeners),
+                screen,
+                per_mm as f32,
+            );
         });
         let rects = layers.into_iter().chain(shown.rect).map(|rect| {
             let mm = |at: Pos2| (DVec2::new(f64::from(at.x), f64::from(at.y)) - corner) / per_mm;
@@ -293,6 +301,9 @@ impl Hud {
         if let Some(text) = table.notice() {
             notice(&painter, &flat, rect, text);
         }
+        if let Some((at_mm, number, left_s)) = table.cross() {
+            warning::cross(&painter, &flat, screen, at_mm, number, left_s);
+        }
         if let Some(left_s) = table.cleaning_s() {
             warning::clean(&painter, &flat, screen, left_s);
         }
@@ -343,7 +354,7 @@ impl Hud {
         context: &Context,
         table: &mut Table,
         settings: &Settings,
-        health: &Health,
+        (health, listeners): (&Health, &Listeners),
         screen: Rect,
         per_mm: f32,
     ) -> staff::Shown {
@@ -351,6 +362,7 @@ impl Hud {
             .contact_ages()
             .map(|(at_mm, age_s)| ContactHealth { at_mm, age_s })
             .collect();
+        let devices: Vec<&str> = listeners.lines().collect();
         let door = table.door().phase();
         let frame = table.frame();
         let view = StaffView {
@@ -365,6 +377,8 @@ impl Hud {
                 steps_per_s: health.steps_per_s,
                 nodes: table.nodes(),
                 contacts: &contacts,
+                source: word(table.stream.heard()),
+                devices: &devices,
                 stats: frame.contacts,
                 dead_touches: frame.counts.dead_touches,
                 panics: frame.panics,

@@ -31,6 +31,25 @@ pub(super) struct Facts {
     pub(super) taps: u64,
     /// Contacts taken for palms, sleeves or ghosts.
     pub(super) ghosts_dropped: u64,
+    /// Those of them that had acted, so that it was taken back.
+    pub(super) retracted: u64,
+    /// Contacts that went on with the stroke of another, which had flickered.
+    pub(super) bridged: u64,
+    /// Contacts that were stuck.
+    pub(super) stuck: u64,
+    /// Downs of contacts that were down.
+    pub(super) doubled: u64,
+    /// Downs beyond the cap.
+    pub(super) over_cap: u64,
+    /// Contacts that were withdrawn with their window or device.
+    pub(super) withdrawn: u64,
+    /// The source of touches that is heard, and the devices there are beside the window.
+    pub(super) source: &'static str,
+    pub(super) devices: usize,
+    /// States of devices that are not heard, that nobody fetched in time, and packets that were turned away.
+    pub(super) unheard: u64,
+    pub(super) states_lost: u64,
+    pub(super) packets_refused: u64,
     /// Events of contacts that were not down, or with coordinates that are no place.
     pub(super) ignored: u64,
     /// Touches that changed nothing anybody could see.

@@ -12,14 +12,18 @@ mod hud;
 mod keeper;
 mod keys;
 mod layers;
+mod listen;
 mod log;
 mod metrics;
+mod record;
 mod save;
+mod screen;
 mod setup;
 mod sheets;
 mod shows;
 mod table;
 mod told;
+mod touch;
 mod watch;
 mod window;
 mod worlds;
@@ -53,6 +57,8 @@ pub struct Options {
     pub metrics: Option<PathBuf>,
     /// Rock under new land, instead of the settings': a preset, or the path of a TOML file.
     pub layers: Option<String>,
+    /// A file that is to hold what is done at the table; it must not be there yet.
+    pub record: Option<PathBuf>,
     /// How a land is written to files.
     pub save: SaveLand,
 }
@@ -104,7 +110,7 @@ pub fn run(options: &Options) -> Result<(), AppError> {
         settings,
         layers,
         metrics,
-        events.owned_display_handle(),
+        (events.owned_display_handle(), events.create_proxy()),
     );
     let ran = events.run_app(&mut program);
     program.end()?;

@@ -75,6 +75,11 @@ impl Saver {
         self.tell(done);
     }
 
+    /// Word of something else than a save.
+    pub(super) fn say(&mut self, text: &str) {
+        self.notice = Some((text.to_owned(), self.now_us + NEWS_US));
+    }
+
     /// Word of the last save, while it is news.
     pub(super) fn notice(&self) -> Option<&str> {
         let (text, until_us) = self.notice.as_ref()?;

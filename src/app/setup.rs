@@ -47,11 +47,16 @@ pub(super) fn nodes(settings: &Settings, software: bool) -> usize {
     settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
 }
 
+/// Samples of the planet.
+pub(super) fn globe_samples(software: bool) -> usize {
+    if software { SOFTWARE_SAMPLES } else { LIVE_SAMPLES }
+}
+
 /// What the planet's session is made for.
 pub(super) fn globe_params(size_mm: DVec2, software: bool) -> LiveGlobeParams {
     LiveGlobeParams {
         size_mm,
-        samples: if software { SOFTWARE_SAMPLES } else { LIVE_SAMPLES },
+        samples: globe_samples(software),
         start: default_start(1),
         sim: GlobeSimParams::default(),
         threads: 0,

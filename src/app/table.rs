@@ -7,13 +7,18 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::eye::Eye;
+use super::record::Recorder;
 use super::save::Saver;
-use super::setup::{door_params, globe_params, instrument_params, nodes, raster_width, window_map};
+use super::setup::{
+    door_params, globe_params, globe_samples, instrument_params, nodes, raster_width, window_map,
+};
 use super::shows::Shows;
 use super::worlds::Worlds;
 use super::{AppError, Options};
 use crate::gesture::command::{Action, Command, Mode};
-use crate::gesture::contact::{ContactEvent, ContactKey, Phase as ContactPhase, Side};
+use crate::gesture::contact::{Contact, ContactEvent, ContactKey, Phase as ContactPhase, Side};
+use crate::input::calibrate::Calibrating;
+use crate::input::stream::Stream;
 use crate::input::window::{TouchPhase, WindowInput};
 use crate::instrument::{ControlId, Instrument, Key, Route};
 use crate::kiosk::{DoorPhase, Kiosk, KioskParams, Phase, StaffDoor};
@@ -25,6 +30,9 @@ use crate::units::PlanMap;
 
 /// How long touches do nothing while the table is wiped, µs.
 const CLEANING_US: u64 = 30_000_000;
+
+/// Seed of the land that a table begins with.
+const SEED: u64 = 1;
 
 /// What the window tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +75,8 @@ pub(super) struct Table {
     pub(super) map: PlanMap,
     pub(super) size_px: DVec2,
     pub(super) input: WindowInput,
+    pub(super) stream: Stream,
+    pub(super) calibrating: Option<Calibrating>,
     pub(super) instrument: Instrument,
     pub(super) kiosk: Kiosk,
     pub(super) shows: Shows,
@@ -111,7 +121,7 @@ impl Table {
         let mountain = LiveParams {
             map,
             nodes,
-            seed: 1,
+            seed: SEED,
             layers,
             sim: SimParams::default(),
             raster_width: raster_width(software),
@@ -121,11 +131,24 @@ impl Table {
             .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
         let home = options.mode.unwrap_or(settings.mode);
         worlds.turn_to(home);
+        if let Some(path) = &options.record {
+            let (mode, seed) = (worlds.shown(), SEED);
+            let nodes = match mode {
+                Mode::Mountain => nodes,
+                Mode::Globe => globe_samples(software),
+            };
+            let recorder = Recorder::new(path, size_mm, mode, seed, nodes)
+                .map_err(|error| AppError::File(path.display().to_string(), error))?;
+            worlds.record(recorder);
+        }
+        let window = window_map(settings, &map, size_px);
         Ok(Self {
             unattended,
             map,
             size_px,
-            input: WindowInput::new(window_map(settings, &map, size_px)),
+            input: WindowInput::new(window),
+            stream: Stream::new(settings.input.source, window.surface()),
+            calibrating: None,
             instrument: Instrument::new(instrument_params(settings, size_mm, unattended, worlds.shown())),
             kiosk: Kiosk::new(KioskParams::new(&settings.kiosk, unattended)),
             shows: Shows::new(size_mm),
@@ -235,7 +258,7 @@ impl Table {
 
     /// Contacts that are down: where, table mm, and for how long, s.
     pub(super) fn contact_ages(&self) -> impl Iterator<Item = (DVec2, f64)> {
-        self.input.contacts().map(|contact| {
+        self.contacts_down().map(|contact| {
             let since_us = self.since_us.get(&contact.key).copied().unwrap_or(self.now_us);
             (
                 contact.position,
@@ -263,7 +286,17 @@ impl Table {
 
     /// Number of contacts that are down.
     pub(super) fn contacts(&self) -> usize {
-        self.input.contacts().count()
+        self.contacts_down().count()
+    }
+
+    /// The contacts that are down, of all sources.
+    fn contacts_down(&self) -> impl Iterator<Item = &Contact> {
+        self.input.contacts().chain(self.stream.contacts())
+    }
+
+    /// Table time.
+    pub(super) fn now_us(&self) -> u64 {
+        self.now_us
     }
 
     /// True while somebody is there or the land moves under hands: then every frame counts.
@@ -275,6 +308,7 @@ impl Table {
     pub(super) fn raw(&mut self, raw: Raw, now_us: u64) {
         let mut events = Vec::new();
         match raw {
+            Raw::Touch { .. } if !self.hears_window(now_us) => {}
             Raw::Touch {
                 device,
                 id,
@@ -300,6 +334,7 @@ impl Table {
     pub(super) fn cancel_all(&mut self, now_us: u64) {
         let mut events = Vec::new();
         self.input.cancel_all(&mut events);
+        self.stream.cancel_all(&mut events);
         self.take(events, now_us);
         self.instrument.cancel_all();
     }
@@ -310,6 +345,7 @@ impl Table {
         let mut events = Vec::new();
         let map = window_map(settings, &self.map, self.size_px);
         self.input.set_map(map, &mut events);
+        self.stream.set_map(map.surface(), &mut events);
         self.take(events, now_us);
         self.layout_told = None;
     }
@@ -330,6 +366,7 @@ impl Table {
         self.home = self.mode.unwrap_or(settings.mode);
         let size_px = [self.size_px.x as u32, self.size_px.y as u32];
         self.resize(settings, size_px, now_us);
+        self.apply_input(settings, now_us);
     }
 
     /// A key that stands in for a control.
@@ -364,7 +401,7 @@ impl Table {
         self.saver.settings(settings, path);
     }
 
-    fn take(&mut self, events: Vec<ContactEvent>, now_us: u64) {
+    pub(super) fn take(&mut self, events: Vec<ContactEvent>, now_us: u64) {
         for event in events {
             self.contact(&event, now_us);
         }
@@ -378,6 +415,9 @@ impl Table {
             ContactPhase::Down => drop(self.since_us.insert(event.contact.key, now_us)),
             ContactPhase::Up | ContactPhase::Cancel => drop(self.since_us.remove(&event.contact.key)),
             ContactPhase::Move => {}
+        }
+        if self.calibrates(event, now_us) {
+            return;
         }
         if self.cleaning_s().is_some() {
             self.seen.push(Seen {

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::graphics::Graphics;
+use super::listen::{Listeners, word};
 use super::metrics::Facts;
 use super::table::Table;
 use crate::gesture::contact::Side;
@@ -18,7 +19,13 @@ const FINGERTIP_MM: f64 = 12.0;
 
 impl Table {
     /// Figures of this second.
-    pub(super) fn facts(&self, graphics: &Graphics, scale: f32, devices_lost: u32) -> Facts {
+    pub(super) fn facts(
+        &self,
+        graphics: &Graphics,
+        listeners: &Listeners,
+        scale: f32,
+        devices_lost: u32,
+    ) -> Facts {
         let [width, height] = graphics.size_px();
         let info = &graphics.gpu().info;
         let window = self.input.counts();
@@ -42,8 +49,18 @@ impl Table {
                 None => of_mountain(worlds.mountain(), self.nodes),
             }
         };
+        let stream = self.stream.counts();
+        let devices = stream.devices;
         Facts {
-            ignored: facts.ignored + window.unknown,
+            ignored: facts.ignored + window.unknown + devices.no_place,
+            doubled: facts.doubled + window.doubled + devices.doubled,
+            over_cap: facts.over_cap + window.over_cap + devices.over_cap,
+            withdrawn: window.withdrawn + devices.withdrawn,
+            source: word(self.stream.heard()),
+            devices: self.stream.devices().count(),
+            unheard: stream.unheard,
+            states_lost: listeners.lost(),
+            packets_refused: listeners.refused(),
             ..facts
         }
     }
@@ -135,6 +152,11 @@ fn of_contacts(contacts: &ContactStats) -> Facts {
         pushes: contacts.pushes,
         taps: contacts.taps,
         ghosts_dropped: contacts.dropped_ghosts,
+        retracted: contacts.retracted,
+        bridged: contacts.bridged,
+        stuck: contacts.stuck,
+        doubled: contacts.doubled,
+        over_cap: contacts.over_cap,
         ignored: contacts.ignored,
         ..Facts::default()
     }

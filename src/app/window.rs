@@ -6,11 +6,9 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
 use winit::event::{DeviceId, ElementState, MouseButton, TouchPhase, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, OwnedDisplayHandle};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy, OwnedDisplayHandle};
 use winit::keyboard::ModifiersState;
-use winit::monitor::MonitorHandle;
 use winit::window::{Fullscreen, Window, WindowId};
 
 use super::governor::Governor;
@@ -18,7 +16,9 @@ use super::graphics::{Graphics, Scene, Shown};
 use super::hud::Hud;
 use super::keeper;
 use super::keys;
+use super::listen::Listeners;
 use super::metrics::Metrics;
+use super::screen::attributes;
 use super::table::{Raw, Table};
 use super::watch::{Heartbeat, Watch};
 use super::{AppError, Options};
@@ -27,8 +27,6 @@ use crate::rock::Stratigraphy;
 use crate::settings::Settings;
 use crate::ui::staff::StaffAction;
 
-/// Size of the window where nobody says, pixels.
-const WINDOW_SIZE: [u32; 2] = [1280, 720];
 /// Longest time between two looks at the table while nothing moves, so that clocks and idle times go on.
 const IDLE_LOOK: Duration = Duration::from_millis(100);
 /// Frame time aimed at on a graphics card: 60 Hz.
@@ -47,6 +45,7 @@ pub(super) struct Program {
     layers: Arc<Stratigraphy>,
     metrics: Metrics,
     display: OwnedDisplayHandle,
+    listeners: Listeners,
     began: Instant,
     heart: Heartbeat,
     open: Option<Open>,
@@ -77,9 +76,10 @@ impl Program {
         settings: Settings,
         layers: Arc<Stratigraphy>,
         metrics: Metrics,
-        display: OwnedDisplayHandle,
+        (display, proxy): (OwnedDisplayHandle, EventLoopProxy<()>),
     ) -> Self {
         Self {
+            listeners: Listeners::start(&settings.input, proxy),
             options,
             settings,
             layers,
@@ -99,7 +99,7 @@ impl Program {
 
     fn open(&mut self, events: &ActiveEventLoop) -> Result<Open, AppError> {
         let window = events
-            .create_window(self.attributes(events))
+            .create_window(attributes(&self.options, events))
             .map_err(|error| AppError::NoDisplay(format!("no window: {error}")))?;
         let window = Arc::new(window);
         if self.options.kiosk {
@@ -145,31 +145,6 @@ impl Program {
         Ok(open)
     }
 
-    fn attributes(&self, events: &ActiveEventLoop) -> winit::window::WindowAttributes {
-        let attributes = Window::default_attributes().with_title("Orogen");
-        if self.options.windowed {
-            let [width, height] = self.options.size.unwrap_or(WINDOW_SIZE);
-            return attributes.with_inner_size(PhysicalSize::new(width, height));
-        }
-        let monitors: Vec<MonitorHandle> = events.available_monitors().collect();
-        let wanted = self
-            .options
-            .monitor
-            .and_then(|number| monitors.get(number - 1).cloned());
-        if wanted.is_none() && self.options.monitor.is_some() {
-            tracing::warn!("there are {} monitors; using the primary one", monitors.len());
-        }
-        let monitor = wanted
-            .or_else(|| events.primary_monitor())
-            .or_else(|| monitors.into_iter().next());
-        if let Some(monitor) = &monitor {
-            // Without a window manager nobody resizes a full-screen window.
-            let attributes = attributes.with_inner_size(monitor.size());
-            return attributes.with_fullscreen(Some(Fullscreen::Borderless(Some(monitor.clone()))));
-        }
-        attributes.with_fullscreen(Some(Fullscreen::Borderless(None)))
-    }
-
     fn now_s(&self) -> f64 {
         self.began.elapsed().as_secs_f64()
     }
@@ -179,14 +154,27 @@ impl Program {
         events.exit();
     }
 
+    /// Hands over what touch devices have said.
+    fn hear_devices(&mut self) {
+        let now_s = self.now_s();
+        let Some(open) = &mut self.open else { return };
+        let metrics = &mut self.metrics;
+        self.listeners.drain(|source, frame| {
+            if open.table.device(source, frame, micros(now_s)) {
+                metrics.touched(now_s);
+            }
+        });
+    }
+
     fn frame(&mut self, events: &ActiveEventLoop) {
         let now_s = self.now_s();
         self.heart.beat();
+        self.hear_devices();
         let Some(open) = &mut self.open else { return };
         match open.frame(
             &mut self.metrics,
             &mut self.settings,
-            &self.options,
+            (&self.options, &mut self.listeners),
             now_s,
             self.began,
         ) {
@@ -220,7 +208,7 @@ impl Open {
         &mut self,
         metrics: &mut Metrics,
         settings: &mut Settings,
-        options: &Options,
+        (options, listeners): (&Options, &mut Listeners),
         now_s: f64,
         began: Instant,
     ) -> Drawn {
@@ -229,13 +217,23 @@ impl Open {
         self.table.step(settings, now_us, dt_s);
         let size_px = self.graphics.size_px();
         self.graphics.follow(self.table.worlds(), now_s);
-        let run = self
-            .hud
-            .run(&mut self.table, settings, metrics.health(), size_px, now_s);
+        let run = self.hud.run(
+            &mut self.table,
+            settings,
+            (metrics.health(), listeners),
+            size_px,
+            now_s,
+        );
         for action in run.actions {
             if self.act(action, settings, options, now_us) {
                 return Drawn::Ended;
             }
+        }
+        if self.table.end_calibration(settings, now_us) {
+            self.table.save_settings(settings, options.settings.as_deref());
+        }
+        if listeners.apply(&settings.input) {
+            self.table.forget_devices(now_us);
         }
         let shown = self.graphics.draw(
             &Scene {
@@ -268,7 +266,9 @@ impl Open {
             metrics.write(&panel);
         }
         if metrics.due(done_s) {
-            let facts = self.table.facts(&self.graphics, self.scale, self.revivals);
+            let facts = self
+                .table
+                .facts(&self.graphics, listeners, self.scale, self.revivals);
             metrics.close(done_s, &facts);
             keeper::alive();
         }
@@ -299,6 +299,10 @@ impl Open {
             StaffAction::Clean => {
                 door.close();
                 self.table.clean(now_us);
+            }
+            StaffAction::Calibrate => {
+                door.close();
+                self.table.calibrate(now_us);
             }
             StaffAction::Apply(changed) => {
                 *settings = *changed;
@@ -455,6 +459,10 @@ impl ApplicationHandler for Program {
             WindowEvent::RedrawRequested => self.frame(events),
             _ => {}
         }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
+        self.hear_devices();
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
 
+use super::record::Recorder;
 use crate::gesture::command::{Command, Mode};
 use crate::gesture::contact::ContactEvent;
 use crate::gesture::hand::{Doing, HandView};
@@ -27,6 +28,7 @@ pub(super) struct Worlds {
     globe: Option<GlobeSession>,
     globe_params: LiveGlobeParams,
     globe_beats: Arc<OnceLock<Heartbeat>>,
+    recorder: Option<Recorder>,
 }
 
 impl Worlds {
@@ -38,7 +40,13 @@ impl Worlds {
             globe: None,
             globe_params: globe,
             globe_beats: Arc::default(),
+            recorder: None,
         })
+    }
+
+    /// Records what goes to the world that is shown now.
+    pub(super) fn record(&mut self, recorder: Recorder) {
+        self.recorder = Some(recorder);
     }
 
     /// The world that is shown.
@@ -124,7 +132,11 @@ impl Worlds {
     }
 
     /// Hands input over to the world that is shown.
-    pub(super) fn send(&self, events: Vec<ContactEvent>, commands: Vec<Command>, now_us: u64) {
+    pub(super) fn send(&mut self, events: Vec<ContactEvent>, commands: Vec<Command>, now_us: u64) {
+        let shown = self.shown();
+        if let Some(recorder) = &mut self.recorder {
+            recorder.take(shown, &events, &commands, now_us);
+        }
         match self.globe.as_ref().filter(|_| self.shown == Mode::Globe) {
             Some(globe) => globe.send(events, commands, now_us),
             None => self.mountain.send(events, commands, now_us),

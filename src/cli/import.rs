@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+use glam::DVec2;
+
 use super::ImportArgs;
 use super::console::Console;
 use super::failure::Failure;
@@ -21,12 +23,7 @@ pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
             .as_deref()
             .map(|text| numbers("--range", "X0,X1,Y0,Y1", text))
             .transpose()?,
-        size_mm: args
-            .size_mm
-            .as_deref()
-            .map(|text| numbers("--size-mm", "W,H", text))
-            .transpose()?
-            .map(|[w, h]: [f64; 2]| glam::DVec2::new(w, h)),
+        size_mm: size_mm(args.size_mm.as_deref())?,
     };
     let file = File::open(&args.file).map_err(|error| Failure::input(format!("{name}: {error}")))?;
     let imported = import_recording(BufReader::new(file), &name, &options).map_err(Failure::input)?;
@@ -57,6 +54,14 @@ pub(super) fn run(args: &ImportArgs) -> Result<(), Failure> {
         .map_err(Failure::input)?;
     Console::result(&args.out.display().to_string());
     Ok(())
+}
+
+/// What `--size-mm` says.
+pub(super) fn size_mm(text: Option<&str>) -> Result<Option<DVec2>, Failure> {
+    let size = text
+        .map(|text| numbers::<2>("--size-mm", "W,H", text))
+        .transpose()?;
+    Ok(size.map(DVec2::from))
 }
 
 /// Folder and name of a file that is to be written.

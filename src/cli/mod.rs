@@ -10,6 +10,8 @@ mod globe;
 mod import;
 mod output;
 #[cfg(feature = "app")]
+mod record;
+#[cfg(feature = "app")]
 mod render;
 mod replay;
 mod slice;
@@ -64,6 +66,9 @@ enum Command {
     Import(ImportArgs),
     /// The touch devices that are plugged in, or what a HID report descriptor means.
     Devices(DevicesArgs),
+    /// Record contacts as a gesture file: of the table in its window, of TUIO, or of a raw touchscreen.
+    #[cfg(feature = "app")]
+    Record(RecordArgs),
     /// Turn a gesture file into an evemu recording, which evemu-play and others play on Linux.
     ExportEvemu(ExportEvemuArgs),
     /// Is this machine fast enough? Every stage at the sizes of the literature.
@@ -327,6 +332,29 @@ struct DevicesArgs {
     udev: bool,
 }
 
+/// What is recorded.
+#[cfg(feature = "app")]
+#[derive(Debug, Args)]
+struct RecordArgs {
+    /// The gesture file to write; it must not be there yet.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Record what TUIO senders on this machine say, instead of the table (default port: 3333).
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "3333", conflicts_with = "hid", value_parser = clap::value_parser!(u16).range(1..))]
+    tuio: Option<u16>,
+    /// Record a raw touchscreen, instead of the table (default: the first one that is there).
+    #[arg(long, value_name = "PATH", num_args = 0..=1, default_missing_value = "")]
+    hid: Option<String>,
+    /// Size of the touching surface in millimetres, where the device does not tell.
+    #[arg(long, value_name = "W,H")]
+    size_mm: Option<String>,
+    /// End after so many seconds (default: when the program is ended).
+    #[arg(long, value_name = "N")]
+    seconds: Option<f64>,
+    #[command(flatten)]
+    table: TableArgs,
+}
+
 #[derive(Debug, Args)]
 struct ExportEvemuArgs {
     /// The gesture file.
@@ -369,6 +397,8 @@ pub fn main() -> ExitCode {
         Some(Command::Erode(args)) => erode::run(&args, console),
         Some(Command::Import(args)) => import::run(&args),
         Some(Command::Devices(args)) => devices::run(&args, console),
+        #[cfg(feature = "app")]
+        Some(Command::Record(args)) => record::run(&args, console),
         Some(Command::ExportEvemu(args)) => export_evemu::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
     };

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings};
-use super::{PictureChoice, TableArgs, replay};
+use super::{PictureChoice, RecordArgs, TableArgs, replay};
 use crate::app::{self, AppError, Options, SavedLand};
 use crate::export::OutDir;
 use crate::gesture::command::Mode;
@@ -44,9 +44,19 @@ pub(super) fn kiosk(args: &TableArgs) -> Result<(), Failure> {
     app::run(&options(args, true)).map_err(failure)
 }
 
+/// Opens the table, and records what is done at it.
+pub(super) fn record(args: &RecordArgs) -> Result<(), Failure> {
+    let options = Options {
+        record: Some(args.out.clone()),
+        ..options(&args.table, false)
+    };
+    app::run(&options).map_err(failure)
+}
+
 fn options(args: &TableArgs, kiosk: bool) -> Options {
     Options {
         kiosk,
+        record: None,
         windowed: args.windowed || args.size.is_some(),
         size: args.size,
         monitor: args.monitor.map(usize::from),

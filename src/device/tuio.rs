@@ -23,7 +23,7 @@ pub const TUIO_PORT: u16 = 3333;
 /// Longest wait for a packet: how late silence and the end are noticed.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Time between two looks at the senders for [`TuioListener::sources`].
+/// Time between two looks at the senders for [`TuioHeard::sources`].
 const LOOK: Duration = Duration::from_millis(500);
 
 /// Where and to whom to listen.

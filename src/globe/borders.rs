@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cover::{Cover, NOBODY};
+use super::cover::{Cover, NOBODY, Over};
 use super::crust::{Crust, Marks};
 use super::params::GlobeParams;
 use super::plate::Plate;
@@ -148,7 +148,7 @@ impl Polarities {
     /// Decides for all segments that close. Continents stay on top of oceans; between oceans the younger side does; a front
     /// that exists turns around only where that is clear, and not soon.
     pub(super) fn decide(&mut self, strip: &Strip<'_>, meetings: &[Meeting], now_my: f64) {
-        let closing: Vec<(Segment, bool, [(u16, u32); 2])> = meetings
+        let closing: Vec<(Segment, bool, [Over; 2])> = meetings
             .par_iter()
             .with_min_len(256)
             .filter(|meeting| meeting.closing > strip.params.least_closing)

@@ -13,7 +13,7 @@ pub(super) const NOBODY: u16 = u16::MAX;
 const MOST: usize = 4;
 
 /// A plate (index) and one of its slots.
-type Over = (u16, u32);
+pub(super) type Over = (u16, u32);
 
 /// A place that more than one plate covers.
 #[derive(Clone, Debug, PartialEq, Eq)]

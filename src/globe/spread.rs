@@ -242,7 +242,7 @@ pub(super) fn grown(gaps: &[Gap], plates: &[Plate], gone: &[Vec<bool>], lattice:
     for gap in gaps {
         own[gap.plate as usize].push(gap);
     }
-    let taken: Vec<(Vec<(u32, Crust)>, f64, f64)> = plates
+    let taken: Vec<Taken> = plates
         .par_iter()
         .zip(gone)
         .zip(own)
@@ -276,16 +276,22 @@ pub(super) fn grown(gaps: &[Gap], plates: &[Plate], gone: &[Vec<bool>], lattice:
         new_km2: 0.0,
         drawn_km2: 0.0,
     };
-    for (crust, new_km2, drawn_km2) in taken {
-        grown.crust.push(crust);
-        grown.new_km2 += new_km2;
-        grown.drawn_km2 += drawn_km2;
+    for taken in taken {
+        grown.crust.push(taken.crust);
+        grown.new_km2 += taken.new_km2;
+        grown.drawn_km2 += taken.drawn_km2;
     }
     grown
 }
 
-/// Samples that a plate takes, with their crust in its frame; new area and drawn-out area, km².
-fn taken(plate: &Plate, added: BTreeMap<u32, &Gap>, lattice: &Lattice) -> (Vec<(u32, Crust)>, f64, f64) {
+/// Samples that a plate takes, with their crust in its frame; new area and drawn-out area.
+struct Taken {
+    crust: Vec<(u32, Crust)>,
+    new_km2: f64,
+    drawn_km2: f64,
+}
+
+fn taken(plate: &Plate, added: BTreeMap<u32, &Gap>, lattice: &Lattice) -> Taken {
     let (mut new_km2, mut drawn_km2) = (0.0, 0.0);
     let back = plate.rotation.inverse();
     let crust = added.into_iter().map(|(i, gap)| {
@@ -294,5 +300,9 @@ fn taken(plate: &Plate, added: BTreeMap<u32, &Gap>, lattice: &Lattice) -> (Vec<(
         (i, gap.crust.turned(back))
     });
     let crust = crust.collect();
-    (crust, new_km2, drawn_km2)
+    Taken {
+        crust,
+        new_km2,
+        drawn_km2,
+    }
 }

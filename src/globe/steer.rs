@@ -61,7 +61,7 @@ impl Planet {
     }
 
     /// Leads a plate: from now on it turns with `omega`, rad/My, until it is let go. True where that was faster than plates
-    /// move and was held to [`GlobeParams::max_speed`]. A plate that there is not is no matter.
+    /// move and was held to [`GlobeParams::max_speed`](super::GlobeParams::max_speed). A plate that there is not is no matter.
     pub fn lead(&mut self, id: u32, omega: DVec3) -> bool {
         let fastest = self.params.max_speed / RADIUS_KM;
         let Some(index) = self.index_of(id) else {

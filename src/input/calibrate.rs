@@ -13,6 +13,55 @@ pub const TARGETS: [DVec2; 4] = [
 /// Farthest that a touch may be from its cross under the best map, parts of the picture: more is a slip.
 const MOST_MISS: f64 = 0.03;
 
+/// Least determinant of the touched places: with less they lie on a line.
+const LEAST: f64 = 1e-6;
+
+/// How long nobody may touch before all is left as it was, µs.
+const PATIENCE_US: u64 = 30_000_000;
+
+/// Touches at the crosses, one after the other.
+#[derive(Clone, Debug)]
+pub struct Calibrating {
+    places: Vec<DVec2>,
+    since_us: u64,
+}
+
+impl Calibrating {
+    /// Nothing has been touched.
+    pub fn new(now_us: u64) -> Self {
+        Self {
+            places: Vec::with_capacity(TARGETS.len()),
+            since_us: now_us,
+        }
+    }
+
+    /// Number of crosses that have been touched.
+    pub fn touched(&self) -> usize {
+        self.places.len()
+    }
+
+    /// A touch has ended at a place, in parts of the picture as the surface lies now.
+    pub fn touch(&mut self, at: DVec2, now_us: u64) {
+        if self.places.len() < TARGETS.len() {
+            self.places.push(at);
+            self.since_us = now_us;
+        }
+    }
+
+    /// Time until it is given up, µs.
+    pub fn left_us(&self, now_us: u64) -> u64 {
+        (self.since_us + PATIENCE_US).saturating_sub(now_us)
+    }
+
+    /// What has come of it, once it is over: the map on top of the present one, or nothing.
+    pub fn done(&self, now_us: u64) -> Option<Option<DAffine2>> {
+        match <&[DVec2; 4]>::try_from(self.places.as_slice()) {
+            Ok(places) => Some(calibration(places)),
+            Err(_) => (self.left_us(now_us) == 0).then_some(None),
+        }
+    }
+}
+
 /// The map (of least squares) that takes four touched places to [`TARGETS`]; `None` where no map does nearly.
 pub fn calibration(touched: &[DVec2; 4]) -> Option<DAffine2> {
     // Normal equations for rows (a, b, c) with a x + b y + c = target, for both coordinates.
@@ -24,7 +73,8 @@ pub fn calibration(touched: &[DVec2; 4]) -> Option<DAffine2> {
         to_x += row * target.x;
         to_y += row * target.y;
     }
-    if !(normal.determinant().abs() > 1e-6) {
+    // (A determinant that is no number is not large enough either.)
+    if normal.determinant().abs().max(LEAST) <= LEAST {
         return None;
     }
     let inverse = normal.inverse();

@@ -13,11 +13,13 @@
 mod form;
 mod keys;
 mod read;
+mod table;
 mod write;
 
 pub use form::Form;
-pub use keys::{Bound, Domain, KEYS, Key, Value};
+pub use keys::{Bound, Domain, Key, Value};
 pub use read::SettingsError;
+pub use table::KEYS;
 
 use std::net::IpAddr;
 

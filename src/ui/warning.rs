@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use egui::emath::Rot2;
 use egui::{Align2, Painter, Rect, vec2};
+use glam::DVec2;
 
 use super::ease;
 use super::ghost;
@@ -37,6 +38,47 @@ pub fn clean(painter: &Painter, sight: &Sight<'_>, screen: Rect, left_s: f64) {
             Align2::CENTER_CENTER,
             &seconds,
             pen.mm(70.0),
+            LAMP,
+            turn,
+        );
+    }
+}
+
+/// Draws, over all of `screen` (points), the cross that is to be touched next: where it is (table mm), how many were
+/// before it, and for how long it waits.
+pub fn cross(painter: &Painter, sight: &Sight<'_>, screen: Rect, at_mm: DVec2, number: usize, left_s: f64) {
+    painter.rect_filled(screen, 0.0, faded(ROOM, 0.85));
+    let pen = Pen::new(painter, sight);
+    let (Some(at), Some(centre)) = (sight.of_table(at_mm), sight.of_table(sight.map().size_mm() / 2.0))
+    else {
+        return;
+    };
+    for arm in [vec2(1.0, 0.0), vec2(0.0, 1.0)] {
+        let (near, far) = (arm * pen.mm(4.0), arm * pen.mm(22.0));
+        for way in [-1.0, 1.0] {
+            pen.line(
+                &[at + near * way, at + far * way],
+                false,
+                Line::solid(AMBER, 1.0, 0.9),
+            );
+        }
+    }
+    pen.ring(at, 13.0, Line::solid(LAMP, 0.7, 0.6));
+    let text = format!(
+        "{}  ({} of 4, {:.0} s)",
+        words::TOUCH_CROSS,
+        number + 1,
+        left_s.ceil()
+    );
+    for side in [Side::South, Side::North] {
+        let turn = turn(side);
+        let place = centre + Rot2::from_angle(turn) * vec2(0.0, pen.mm(40.0));
+        lettering::write(
+            painter,
+            place,
+            Align2::CENTER_CENTER,
+            &text,
+            pen.mm(13.0),
             LAMP,
             turn,
         );

@@ -4,6 +4,9 @@ use crate::gesture::command::Tool;
 use crate::instrument::ControlKind;
 use crate::surface::planet::BorderKind;
 
+/// What is written beside the crosses of a calibration.
+pub(super) const TOUCH_CROSS: &str = "touch the middle of the cross";
+
 /// Beside the hand that stays the count-down.
 pub(super) const TOUCH_TO_STAY: &str = "Touch to stay";
 

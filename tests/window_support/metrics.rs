@@ -36,6 +36,11 @@ pub struct Second {
     pub panics: u64,
     /// Age of the land, years.
     pub elapsed_yr: f64,
+    /// Median time from one frame to the next, ms.
+    pub frame_ms_p50: f64,
+    /// The source of touches that is heard, and packets of TUIO that were turned away.
+    pub source: String,
+    pub packets_refused: u64,
     /// The world that is shown.
     pub mode: String,
     /// Plates of the planet, those that hands lead, and how fast the fastest of them turns.

@@ -242,7 +242,12 @@ impl Table {
         self.wait("a whole second", 10.0, |now| now.t_s >= from + 1.5)
     }
 
-    /// What the screen shows.
+    /// The text of the settings' file.
+    pub fn settings(&self) -> String {
+        fs::read_to_string(self.folder.join("settings.toml")).expect("the settings' file")
+    }
+
+    /// What the screen shows; kept as `name`.
     pub fn look(&mut self, name: &str) -> Picture {
         self.display.screenshot(&self.folder.join(format!("{name}.png")))
     }

@@ -21,7 +21,7 @@
 //!
 //! # Caps
 //!
-//! [`MAX_SOURCES`] senders of [`MAX_CONTACTS`](crate::gesture::contact::MAX_CONTACTS) contacts each; packets of
+//! [`MAX_SOURCES`] senders of [`MAX_CONTACTS`] contacts each; packets of
 //! [`MAX_PACKET_BYTES`]; four bundles deep; 4,000 packets a second of each sender, and 500 of all strangers together,
 //! so that noise takes nothing from a table; four restarts a second. Nothing is queued, and nothing is allocated after a sender was met.
 
@@ -123,7 +123,7 @@ pub struct TuioCounts {
     pub restarts: u64,
     /// Packets above the rate that is read.
     pub over_rate: u64,
-    /// Contacts beyond [`MAX_CONTACTS`](crate::gesture::contact::MAX_CONTACTS).
+    /// Contacts beyond [`MAX_CONTACTS`].
     pub over_cap: u64,
     /// Bundles of senders beyond [`MAX_SOURCES`].
     pub over_sources: u64,
@@ -133,6 +133,13 @@ pub struct TuioCounts {
     pub silenced: u64,
     /// Senders that were forgotten or replaced.
     pub forgotten: u64,
+}
+
+impl TuioCounts {
+    /// Packets and bundles that were not read: no TUIO, too many, or of senders for whom there is no place.
+    pub fn turned_away(&self) -> u64 {
+        self.malformed + self.foreign + self.over_rate + self.over_sources
+    }
 }
 
 /// A sender, for people.

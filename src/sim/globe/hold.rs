@@ -185,9 +185,6 @@ impl GlobeSim {
                 },
                 |known| known.1,
             );
-            if known.is_none() && !matches!(duty, Duty::Paint(_, side) if side != view.side) {
-                state.stirred[view.side as usize] = Some(state.tick);
-            }
             for (stroke, _) in &fingers {
                 state.duties.insert(*stroke, (view.hand, duty));
             }
@@ -228,6 +225,10 @@ impl GlobeSim {
             self.state.holds.insert(down.hand, hold);
         }
         let acts = down.grasp != Grasp::Touching;
+        if acts {
+            // (A tap may be anybody's, and wakes the table.)
+            self.state.stirred[down.side as usize] = Some(self.state.tick);
+        }
         if acts && self.state.remembered.insert(down.hand) {
             self.remember(down.side);
         }

@@ -20,8 +20,8 @@ pub struct GlobeSimParams {
     pub tear_km: f64,
     /// Radius of what a finger paints, table mm: the same on every zoom. Default 14.
     pub brush_mm: f64,
-    /// A half of the globe where nobody has done anything for so long is painted by the brush of the other side, seconds of
-    /// session time. Default 10.
+    /// A half of the globe where nobody has held a plate for so long is painted by the brush of the other side, seconds of
+    /// session time. Default 5: who stands alone has just put the tool on.
     pub deserted_s: f64,
     /// How long the mark of a tap stays, seconds of session time. Default 3.
     pub tap_s: f64,
@@ -38,7 +38,7 @@ impl Default for GlobeSimParams {
             carry_my: 10.0,
             tear_km: 300.0,
             brush_mm: 14.0,
-            deserted_s: 10.0,
+            deserted_s: 5.0,
             tap_s: 3.0,
             undo_bytes: 256 << 20,
         }

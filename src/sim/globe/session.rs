@@ -98,7 +98,7 @@ pub(super) struct State {
     pub(super) undo: Vec<Arc<Snapshot>>,
     /// Where fingers that paint were last.
     pub(super) brushes: BTreeMap<StrokeId, DVec3>,
-    /// The tick in which each side last did something of its own.
+    /// The tick in which each side last held a plate or said something.
     pub(super) stirred: [Option<u64>; 2],
     /// The contact whose strokes of the brush the newest snapshot was taken for.
     pub(super) painted_by: Option<u64>,

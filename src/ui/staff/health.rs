@@ -39,6 +39,10 @@ pub struct Health<'a> {
     pub steps_per_s: f64,
     /// Nodes of the terrain.
     pub nodes: usize,
+    /// Which source of touches is heard.
+    pub source: &'a str,
+    /// Touch devices beside the window, and what is wrong with them, a line each.
+    pub devices: &'a [&'a str],
     /// Contacts that are down.
     pub contacts: &'a [ContactHealth],
     /// What became of contacts so far.
@@ -83,7 +87,7 @@ fn span(seconds: f64) -> String {
 
 pub(super) fn show(ui: &mut Ui, health: &Health<'_>) {
     let stats = &health.stats;
-    let rows: [(&str, String, bool); 12] = [
+    let rows: [(&str, String, bool); 13] = [
         (
             "Version",
             format!("{}, running for {}", health.version, span(health.uptime_s)),
@@ -109,6 +113,7 @@ pub(super) fn show(ui: &mut Ui, health: &Health<'_>) {
             format!("{:.1} steps/s on {} nodes", health.steps_per_s, health.nodes),
             false,
         ),
+        ("Touch from", touch_from(health), false),
         (
             "Touches",
             format!(
@@ -142,6 +147,13 @@ pub(super) fn show(ui: &mut Ui, health: &Health<'_>) {
                 ui.end_row();
             }
         });
+}
+
+/// The source that is heard, and the devices there are.
+fn touch_from(health: &Health<'_>) -> String {
+    let mut lines = vec![health.source];
+    lines.extend(health.devices);
+    lines.join("\n")
 }
 
 /// The oldest contacts, with place and age.

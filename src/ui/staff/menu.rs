@@ -67,6 +67,7 @@ impl StaffPanel {
             ("Layers of rock", StaffAction::Layers),
             ("Save the last 60 s of touches", StaffAction::SaveContacts),
             ("Clean the table: 30 s without touch", StaffAction::Clean),
+            ("Calibrate touch at four crosses", StaffAction::Calibrate),
         ] {
             if ui.add_sized(size, Button::new(name)).clicked() {
                 actions.push(action);

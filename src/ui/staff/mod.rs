@@ -50,6 +50,8 @@ pub enum StaffAction {
     SaveLand,
     /// Touches do nothing for a while, so that the table can be wiped.
     Clean,
+    /// Four crosses are touched, to show how the touching surface lies.
+    Calibrate,
     /// These settings are taken and written to the file.
     Apply(Box<Settings>),
 }
