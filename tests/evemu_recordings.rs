@@ -318,7 +318,7 @@ fn what_is_no_recording_is_refused_by_line() {
         (at(0, "x 300000,y 1,sync"), "rec:13: ", "check --range"),
         ("nonsense\n".to_owned(), "rec:11: ", "line: expected N:, I:"),
         ("A: 35 0\n".to_owned(), "rec:11: ", "A: code min max"),
-        ("#".repeat(20_000) + "\n", "rec:11: ", "16384 bytes"),
+        ("#".repeat(200_000) + "\n", "rec:11: ", "163840 bytes"),
         ("E: 1.000000 0003 0035 ü\n".to_owned(), "rec:11: ", "found \"ü\""),
     ] {
         let error = import(&(HEAD.to_owned() + &events)).unwrap_err();

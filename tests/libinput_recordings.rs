@@ -161,8 +161,8 @@ fn what_is_no_such_recording_is_refused_by_line() {
         ),
         (
             "  hid: [\n",
-            &("  hid: ".to_owned() + &" ".repeat(20_000) + "[\n"),
-            "16384 bytes",
+            &("  hid: ".to_owned() + &" ".repeat(200_000) + "[\n"),
+            "163840 bytes",
         ),
     ] {
         let error = bad(from, to);

@@ -364,7 +364,7 @@ fn the_checks_can_fail() {
             .collect();
         second.insert("t_s".to_owned(), t_s.into());
         second.insert("phase".to_owned(), phase.into());
-        for words in ["mode", "adapter", "backend"] {
+        for words in ["mode", "source", "adapter", "backend"] {
             second.insert(words.to_owned(), "some".into());
         }
         // The next line is being written.

@@ -1,6 +1,6 @@
 //! Texts of a certain form.
 
-use std::net::IpAddr;
+use core::net::IpAddr;
 
 use glam::{DAffine2, DVec2};
 

@@ -21,7 +21,7 @@ pub use keys::{Bound, Domain, Key, Value};
 pub use read::SettingsError;
 pub use table::KEYS;
 
-use std::net::IpAddr;
+use core::net::IpAddr;
 
 use glam::{DAffine2, DMat2, DVec2};
 

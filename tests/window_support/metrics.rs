@@ -12,7 +12,7 @@ use super::At;
 
 /// Every field of a second.
 pub const WHOLE_SECOND: &str = "t_s phase mode plates plates_led led_deg_per_my frames frame_ms_p50 frame_ms_p99 touch_ms_p50 touch_ms_p95 steps_per_s \
-    contacts contacts_total hands pushes taps ghosts_dropped dead_touches control_presses resets panics nodes scale \
+    contacts source devices retracted bridged stuck doubled over_cap withdrawn unheard states_lost packets_refused contacts_total hands pushes taps ghosts_dropped dead_touches control_presses resets panics nodes scale \
     elapsed_yr max_m min_m adapter backend width height";
 
 /// The fields of a second that tests ask for.
