@@ -223,6 +223,20 @@ fn settings_stay_in_bounds_however_often_their_buttons_are_pressed() {
 }
 
 #[test]
+fn a_calibration_is_read_and_taken_away() {
+    let calibration = KEYS.iter().find(|key| key.name == "calibration").expect("a key");
+    let mut harness = harness(Table::at_the_menu());
+    let text = Value::Text("1.02 0 0 0.98 -0.01 0.01".to_owned());
+    assert!(calibration.put(&mut harness.state_mut().settings, &text));
+    press(&mut harness, "Table");
+    assert!(harness.query_by_label("1.02 0 0 0.98 -0.01 0.01").is_some());
+    press(&mut harness, "Take away: Calibration");
+    press(&mut harness, "Save settings");
+    let expected = Settings::default();
+    assert_eq!(actions(&mut harness), [StaffAction::Apply(Box::new(expected))]);
+}
+
+#[test]
 fn a_new_pin_is_typed_on_the_table() {
     let mut harness = harness(Table::at_the_menu());
     press(&mut harness, "Staff");
@@ -246,7 +260,9 @@ fn a_new_pin_is_typed_on_the_table() {
 #[test]
 fn targets_are_large_and_on_the_screen_on_every_page() {
     let mut pages = vec!["Now", "Health"];
-    pages.extend(["World", "Table", "Visits", "Staff", "Quality", "View", "Files"]);
+    pages.extend([
+        "World", "Table", "Touch", "Land", "Visits", "Staff", "Quality", "View", "Files",
+    ]);
     let mut harness = harness(Table::at_the_menu());
     for page in pages {
         press(&mut harness, page);
@@ -280,6 +296,8 @@ fn open_section(harness: &mut Harness<'_, Table>, section: &str) {
     let name = match section {
         "" => "World",
         "table" => "Table",
+        "input" => "Touch",
+        "land" => "Land",
         "kiosk" => "Visits",
         "staff" => "Staff",
         "quality" => "Quality",

@@ -181,15 +181,22 @@ impl Listeners {
     }
 
     fn open_tuio(&mut self) {
-        let host = if self.settings.tuio_network {
+        let others = &self.settings.tuio_allow;
+        let (open, all) = (!others.is_empty(), others.iter().any(IpAddr::is_unspecified));
+        let host = if open {
             Ipv4Addr::UNSPECIFIED
         } else {
             Ipv4Addr::LOCALHOST
         };
+        let mut allowed = Vec::new();
+        if open && !all {
+            allowed.push(IpAddr::V4(Ipv4Addr::LOCALHOST));
+            allowed.extend(others);
+        }
         let options = TuioListenerOptions {
             address: SocketAddr::new(IpAddr::V4(host), self.settings.tuio_port),
-            open_to_network: self.settings.tuio_network,
-            allowed: self.settings.tuio_allow.clone(),
+            open_to_network: open,
+            allowed,
             surface_mm: match self.settings.surface_mm {
                 [Some(width), Some(height)] => Some(DVec2::new(width, height)),
                 _ => None,

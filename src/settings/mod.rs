@@ -87,9 +87,7 @@ pub struct InputSettings {
     pub surface_mm: [Option<f64>; 2],
     /// UDP port of TUIO.
     pub tuio_port: u16,
-    /// TUIO of other machines is heard, too.
-    pub tuio_network: bool,
-    /// Machines whose TUIO is heard; none: all that reach the port.
+    /// Other machines whose TUIO is heard beside this one's; an unspecified address (0.0.0.0) stands for all.
     pub tuio_allow: Vec<IpAddr>,
 }
 
@@ -221,7 +219,6 @@ impl Default for Settings {
                 source: Listen::Auto,
                 surface_mm: [None; 2],
                 tuio_port: 3333,
-                tuio_network: false,
                 tuio_allow: Vec::new(),
             },
             land: LandSettings {

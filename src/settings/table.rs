@@ -190,16 +190,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         section: "input",
-        name: "tuio_network",
-        help: "TUIO of other machines is heard, too: whoever reaches the port can draw.",
-        domain: Domain::Switch,
-        get: |s| Value::Switch(s.input.tuio_network),
-        set: |s, v| set_switch(&mut s.input.tuio_network, v),
-    },
-    Key {
-        section: "input",
         name: "tuio_allow",
-        help: "Addresses of the machines whose TUIO is heard, with commas between; empty for all.",
+        help: "Other machines whose TUIO is heard, in the settings file: addresses with commas between, 0.0.0.0 for all.",
         domain: Domain::Text(Form::Addresses),
         get: |s| {
             let addresses = s.input.tuio_allow.iter().map(ToString::to_string);

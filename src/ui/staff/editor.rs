@@ -97,7 +97,8 @@ impl StaffPanel {
                 .inner
             }
             (Domain::Pin, Value::Text(pin)) => self.pin(ui, key, pin, scale),
-            (Domain::Path | Domain::Text(_), Value::Text(text)) => text_field(ui, key, text, &label),
+            (Domain::Path, Value::Text(path)) => text_field(ui, key, path, &label),
+            (Domain::Text(_), Value::Text(text)) => form_field(ui, key, text, scale),
             // A value of another kind than its key's: shown, and left alone.
             _ => {
                 ui.label(key.expected());
@@ -190,6 +191,23 @@ fn text_field(ui: &mut Ui, key: &Key, text: &str, label: &Response) -> Option<Va
         .changed();
     let value = Value::Text(text);
     (changed && key.admits(&value)).then_some(value)
+}
+
+/// A text of a certain form is written elsewhere (half of it would be none); here it is read, and taken away.
+fn form_field(ui: &mut Ui, key: &Key, text: &str, scale: f32) -> Option<Value> {
+    if text.is_empty() {
+        ui.label("none");
+        return None;
+    }
+    let empty = Value::Text(String::new());
+    ui.horizontal(|ui| {
+        ui.label(text);
+        let name = format!("Take away: {}", spoken(key.name));
+        step_button(ui, vec2(TARGET, TARGET) * scale, "×", &name)
+    })
+    .inner
+    .then_some(empty)
+    .filter(|empty| key.admits(empty))
 }
 
 /// A key's name as words.
