@@ -17,6 +17,7 @@ use super::worlds::Worlds;
 use super::{AppError, Options};
 use crate::gesture::command::{Action, Command, Mode};
 use crate::gesture::contact::{Contact, ContactEvent, ContactKey, Phase as ContactPhase, Side};
+use crate::gesture::file::Header;
 use crate::input::calibrate::Calibrating;
 use crate::input::stream::Stream;
 use crate::input::window::{TouchPhase, WindowInput};
@@ -137,7 +138,14 @@ impl Table {
                 Mode::Mountain => nodes,
                 Mode::Globe => globe_samples(software),
             };
-            let recorder = Recorder::new(path, size_mm, mode, seed, nodes)
+            let header = Header {
+                title: Some("a session at the table".to_owned()),
+                mode,
+                seed: Some(seed),
+                nodes: Some(nodes as u64),
+                ..Header::new(size_mm)
+            };
+            let recorder = Recorder::new(path, header)
                 .map_err(|error| AppError::File(path.display().to_string(), error))?;
             worlds.record(recorder);
         }

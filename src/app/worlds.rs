@@ -163,7 +163,10 @@ impl Worlds {
     }
 
     /// The world that is shown begins again from `seed`.
-    pub(super) fn restart(&self, seed: u64) {
+    pub(super) fn restart(&mut self, seed: u64) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.fresh(seed);
+        }
         match self.globe.as_ref().filter(|_| self.shown == Mode::Globe) {
             Some(globe) => globe.restart(default_start(seed)),
             None => self.mountain.restart(Start::Seed(seed)),
@@ -171,7 +174,10 @@ impl Worlds {
     }
 
     /// Both worlds begin again from `seed`.
-    pub(super) fn restart_both(&self, seed: u64) {
+    pub(super) fn restart_both(&mut self, seed: u64) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.fresh(seed);
+        }
         self.mountain.restart(Start::Seed(seed));
         if let Some(globe) = &self.globe {
             globe.restart(default_start(seed));
