@@ -27,7 +27,7 @@ pub use lakes::Lakes;
 pub use landslide::Landslides;
 pub use priority_flood::priority_flood;
 pub use raster::TinRaster;
-pub use resample::resample;
+pub use resample::Resampling;
 pub use sediment::{Deposition, Sediment};
 pub use smooth::SmoothSheet;
 pub use start::StartLand;

@@ -1,7 +1,9 @@
-//! Values from one TIN to another, when the number of nodes changes under a land.
+//! Values from one TIN at other places: when the number of nodes changes under a land, or a part of it is cut out.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
+use super::smooth::SmoothSheet;
 use super::tin::{NodeId, Tin};
 
 /// No triangle beyond this side.
@@ -10,31 +12,82 @@ const NONE: u32 = u32::MAX;
 /// Weight below which a point lies beyond a side; rounding alone must not send a walk to and fro.
 const BEYOND: f64 = -1e-12;
 
-/// `values` at the nodes of `from`, interpolated linearly in its triangles at the nodes of `to`.
+/// Places per task: a task finds its first place by a long walk, all others from the one before. Fixed, so that no result
+/// depends on the number of threads.
+const CHUNK: usize = 16_384;
+
+/// Places in the triangles of a TIN, located once for any number of values.
 ///
-/// Exact for linear fields, to round-off; nodes outside the hull of `from` take the value at a nearby point on it.
-/// The search walks from the triangle of the node before, a few steps when nodes follow a curve as in
-/// [`Tin::poisson`].
-///
-/// # Panics
-/// If `values` does not hold one value per node of `from`.
-pub fn resample(from: &Tin, to: &Tin, values: &[f64]) -> Vec<f64> {
-    assert_eq!(values.len(), from.len(), "one value per node");
-    let beyond = triangles_beyond(from);
-    let mut triangle = 0;
-    to.positions()
-        .iter()
-        .map(|&p| {
-            let weights = walk(from, &beyond, &mut triangle, p).map(|weight| weight.max(0.0));
-            let sum: f64 = weights.iter().sum();
-            let corners = from.triangles()[triangle as usize];
-            corners
-                .iter()
-                .zip(weights)
-                .map(|(&k, weight)| weight / sum * values[k as usize])
-                .sum()
-        })
-        .collect()
+/// Places outside its hull stand for a nearby point on it.
+#[derive(Clone, Debug)]
+pub struct Resampling<'a> {
+    from: &'a Tin,
+    samples: Vec<Sample>,
+}
+
+/// A triangle, and the weights of its first two corners.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    triangle: u32,
+    weights: [f64; 2],
+}
+
+impl<'a> Resampling<'a> {
+    /// Locates `places` (plan metres of `from`) by walks from each to the next: a few steps where they follow a curve, as
+    /// the nodes of [`Tin::poisson`] do.
+    pub fn new(from: &'a Tin, places: &[DVec2]) -> Self {
+        let beyond = triangles_beyond(from);
+        let locate = |places: &[DVec2]| {
+            let mut triangle = 0;
+            let mut samples = Vec::with_capacity(places.len());
+            for &p in places {
+                let weights = walk(from, &beyond, &mut triangle, p).map(|weight| weight.max(0.0));
+                let sum: f64 = weights.iter().sum();
+                samples.push(Sample {
+                    triangle,
+                    weights: [weights[0] / sum, weights[1] / sum],
+                });
+            }
+            samples
+        };
+        let samples = places.par_chunks(CHUNK).flat_map_iter(locate).collect();
+        Self { from, samples }
+    }
+
+    /// Nodal `values` interpolated linearly in each triangle: exact for linear fields, to round-off.
+    ///
+    /// # Panics
+    /// If `values` does not hold one value per node.
+    pub fn linear(&self, values: &[f64]) -> Vec<f64> {
+        assert_eq!(values.len(), self.from.len(), "one value per node");
+        let triangles = self.from.triangles();
+        let samples = self.samples.par_iter().with_min_len(CHUNK);
+        samples
+            .map(|sample| {
+                let [a, b, c] = triangles[sample.triangle as usize].map(|k| values[k as usize]);
+                let [u, v] = sample.weights;
+                // Rounding must not make it negative: amounts stay amounts.
+                u * a + v * b + (1.0 - u - v).max(0.0) * c
+            })
+            .collect()
+    }
+
+    /// Nodal `values` interpolated by the surface with continuous slopes that pictures show, in single precision.
+    ///
+    /// # Panics
+    /// If `values` does not hold one value per node.
+    pub fn smooth(&self, values: &[f64]) -> Vec<f64> {
+        assert_eq!(values.len(), self.from.len(), "one value per node");
+        let mut sheet = SmoothSheet::default();
+        let patches = sheet.lay(self.from, values);
+        let samples = self.samples.par_iter().with_min_len(CHUNK);
+        samples
+            .map(|sample| {
+                let weights = sample.weights.map(|weight| weight as f32);
+                f64::from(patches[sample.triangle as usize].height(weights))
+            })
+            .collect()
+    }
 }
 
 /// Walks to the triangle that holds `p`, or to one at the hull that `p` lies beyond; returns the weights of `p` there.
@@ -106,8 +159,11 @@ mod tests {
             let from = Tin::poisson(LAND, few, 1).unwrap();
             let to = Tin::poisson(LAND, many, 2).unwrap();
             let values: Vec<f64> = from.positions().iter().map(|&p| plane(p)).collect();
-            for (value, &p) in resample(&from, &to, &values).iter().zip(to.positions()) {
+            let places = Resampling::new(&from, to.positions());
+            let both = places.linear(&values).into_iter().zip(places.smooth(&values));
+            for ((value, smooth), &p) in both.zip(to.positions()) {
                 assert!((value - plane(p)).abs() < 1e-9);
+                assert!((smooth - plane(p)).abs() < 1e-3, "single precision");
             }
         }
     }
@@ -116,7 +172,11 @@ mod tests {
     fn a_tin_resamples_to_itself() {
         let tin = Tin::poisson(LAND, 500, 3).unwrap();
         let values: Vec<f64> = (0..tin.len()).map(|i| (i as f64).sin()).collect();
-        for (a, b) in resample(&tin, &tin, &values).iter().zip(&values) {
+        for (a, b) in Resampling::new(&tin, tin.positions())
+            .linear(&values)
+            .iter()
+            .zip(&values)
+        {
             assert!((a - b).abs() < 1e-9);
         }
     }
@@ -127,7 +187,7 @@ mod tests {
         let corners = corners.map(|(x, y)| DVec2::new(x, y));
         let from = Tin::from_nodes(LAND, &corners, Border::Hull).unwrap();
         let to = Tin::poisson(LAND, 300, 4).unwrap();
-        let values = resample(&from, &to, &[0.0, 1.0, 1.0, 0.0]);
+        let values = Resampling::new(&from, to.positions()).linear(&[0.0, 1.0, 1.0, 0.0]);
         let round_off = 1e-12;
         assert!(
             values

@@ -149,6 +149,15 @@ impl Tin {
     /// [`TinError`] when `nodes` is outside [`MIN_POISSON_NODES`]`..=`[`MAX_NODES`] or the extent is no rectangle.
     pub fn poisson(extent: Extent, nodes: usize, seed: u64) -> Result<Self, TinError> {
         check_extent(extent)?;
+        Self::check_nodes(nodes)?;
+        Self::of_samples(extent, &poisson_disc(extent, nodes, seed))
+    }
+
+    /// Checks whether [`Self::poisson`] can lay so many nodes.
+    ///
+    /// # Errors
+    /// [`TinError`] when `nodes` is outside [`MIN_POISSON_NODES`]`..=`[`MAX_NODES`].
+    pub fn check_nodes(nodes: usize) -> Result<(), TinError> {
         if nodes < MIN_POISSON_NODES {
             return Err(TinError::TooFewNodes {
                 found: nodes,
@@ -158,7 +167,24 @@ impl Tin {
         if nodes > MAX_NODES {
             return Err(TinError::TooManyNodes { found: nodes });
         }
-        Self::of_samples(extent, &poisson_disc(extent, nodes, seed))
+        Ok(())
+    }
+
+    /// The same nodes, of which those of `border` let water leave the land.
+    ///
+    /// # Errors
+    /// [`TinError`] when there is not one flag per node, or none is true.
+    pub fn with_border(self, border: Vec<bool>) -> Result<Self, TinError> {
+        if border.len() != self.len() {
+            return Err(TinError::BorderLength {
+                found: border.len(),
+                expected: self.len(),
+            });
+        }
+        if !border.contains(&true) {
+            return Err(TinError::NoBorder);
+        }
+        Ok(Self { border, ..self })
     }
 
     /// A TIN of Poisson-disc samples of `extent` that leave no room for another: nodes are at least `radius` metres
