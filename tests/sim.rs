@@ -8,7 +8,7 @@ use glam::DVec2;
 use orogen::gesture::command::{Action, Arrow, Command};
 use orogen::gesture::contact::{InputFrame, Phase, Side};
 use orogen::sim::{Sim, SimParams, TICK_US, World};
-use orogen::terrain::Tin;
+use orogen::terrain::{Resampling, Tin};
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
 use sim_common::{SIZE_MM, event, frame, palm, stroke};
@@ -227,7 +227,8 @@ fn a_world_moves_to_other_nodes() {
     );
     let world = sim.world();
     let finer = Tin::poisson(world.map.extent(), 8000, 3).expect("a TIN");
-    let moved = world.resampled(Arc::new(finer));
+    let places = Resampling::new(&world.tin, finer.positions());
+    let moved = world.resampled(Arc::new(finer), &places);
     let mean = |world: &World| {
         let areas = world.tin.areas();
         world.z.iter().zip(areas).map(|(z, a)| z * a).sum::<f64>() / areas.iter().sum::<f64>()

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::folding::{FoldingLayer, folding_layers};
 use super::step::Sim;
 use crate::gesture::event::{HandEvent, HandId, Leg};
+use crate::mountain::fold::FoldDrive;
 use crate::mountain::residue::Residue;
 use crate::mountain::strata::NodeFolds;
 use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateSet, PlateState, TectonicField};
@@ -34,6 +35,8 @@ pub(super) struct Uplift {
     pub(super) at_nodes: Vec<f64>,
     /// Growth of folds at the nodes.
     pub(super) folds: Vec<NodeFolds>,
+    /// What makes them grow; none where nothing folds.
+    pub(super) folding: Option<Arc<FoldDrive>>,
     /// Faults, and when each stopped, years; `None` while it moves.
     pub(super) faults: Vec<(FaultTrace, Option<f64>)>,
     /// What it was computed for.
@@ -41,12 +44,25 @@ pub(super) struct Uplift {
 }
 
 impl Uplift {
+    /// The same faults on a land of other nodes, where nothing rises.
+    pub(super) fn still_on(&self, nodes: usize) -> Self {
+        Self {
+            field: self.field.clone(),
+            at_nodes: vec![0.0; nodes],
+            folds: Vec::new(),
+            folding: None,
+            faults: self.faults.clone(),
+            drive: Drive::default(),
+        }
+    }
+
     /// No uplift at all.
     pub(super) fn still(field: &TectonicField, nodes: usize) -> Self {
         Self {
             field: field.uplift.clone(),
             at_nodes: vec![0.0; nodes],
             folds: Vec::new(),
+            folding: None,
             faults: Vec::new(),
             drive: Drive::default(),
         }
@@ -244,9 +260,10 @@ impl Sim {
             *rate = 0.0;
             state.quarantine.uplift_nodes += 1;
         }
+        let folding = Arc::new(field.folding.clone());
         if drive.0.iter().any(|(_, doing)| *doing == PlateState::Pushing) {
             state.last_motion = Some(field.report);
-            state.last_folding = Some(Arc::new(field.folding.clone()));
+            state.last_folding = Some(Arc::clone(&folding));
         }
         // A fault stays on the map for a while when its push is spent.
         let mut faults: Vec<(FaultTrace, Option<f64>)> =
@@ -262,6 +279,7 @@ impl Sim {
             field: field.uplift.clone(),
             at_nodes,
             folds,
+            folding: (!folding.is_still()).then_some(folding),
             faults,
             drive,
         });

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::World;
 use crate::mountain::strata::NodeFolds;
 use crate::rock::MAX_LAYERS;
+use crate::terrain::Forcing;
 
 /// Nodes per task. Fixed, so that no result depends on the number of threads.
 const CHUNK: usize = 4096;
@@ -21,6 +22,24 @@ pub(super) struct Exposure {
 }
 
 impl Exposure {
+    /// What drives a step of the land it was read from.
+    pub(super) fn forcing(&self) -> Forcing<'_> {
+        Forcing {
+            erodibility: Some(&self.erodibility),
+            talus: Some(&self.talus),
+            ..Forcing::uplift(&self.rise)
+        }
+    }
+
+    /// Changes what rivers and slides meet at node `i` by two factors: on its erodibility, and on its talus.
+    pub(super) fn weaken(&mut self, factors: impl Fn(usize) -> [f64; 2]) {
+        for (i, (erodibility, talus)) in self.erodibility.iter_mut().zip(&mut self.talus).enumerate() {
+            let [weaker, steeper] = factors(i);
+            *erodibility *= weaker;
+            *talus *= steeper;
+        }
+    }
+
     /// Reads it from `world`, whose pile rises at `base` m/yr while `folds` grow.
     pub(super) fn read(&mut self, world: &World, base: &[f64], folds: &[&NodeFolds]) {
         for values in [&mut self.rise, &mut self.erodibility, &mut self.talus] {

@@ -17,6 +17,7 @@ mod folding;
 pub mod globe;
 mod history;
 mod params;
+pub mod refine;
 mod resume;
 mod rollback;
 mod step;

@@ -35,6 +35,11 @@ impl Checkpoint {
         self.state.tick
     }
 
+    /// The parameters of the session.
+    pub fn params(&self) -> &SimParams {
+        &self.params
+    }
+
     /// The world of that moment.
     pub fn world(&self) -> &World {
         &self.state.world

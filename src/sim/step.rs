@@ -20,7 +20,7 @@ use crate::mountain::strata::NodeFolds;
 use crate::mountain::tectonics::TectonicReport;
 use crate::mountain::{PlateSet, TectonicField, Tectonics};
 use crate::surface::Cut;
-use crate::terrain::{Edges, Erosion, Flow, Forcing, Outlets, Sediment};
+use crate::terrain::{Edges, Erosion, Flow, Outlets, Sediment};
 
 /// Numbers that were none, and what became of them. They never reach the land.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -394,16 +394,11 @@ impl Sim {
         }
         self.exposure.read(world, &self.base, &folds);
         let rise = &self.exposure.rise;
-        let forcing = Forcing {
-            erodibility: Some(&self.exposure.erodibility),
-            talus: Some(&self.exposure.talus),
-            ..Forcing::uplift(rise)
-        };
         let sums = self.erosion.step_with_sediment(
             &world.tin,
             &mut world.z,
             &mut world.sediment,
-            &forcing,
+            &self.exposure.forcing(),
             &self.params.erosion,
             dt_yr,
         );
@@ -421,6 +416,9 @@ impl Sim {
             world.strata.advance(|_| 0.0, folds, dt_yr);
         }
         world.strata.advance(|i| self.base[i], &[], dt_yr);
+        if let Some(drive) = &uplift.folding {
+            world.has_folded(drive, dt_yr);
+        }
         if self.isostasy.is_some() {
             // Folds bring rock that the thickening does not count.
             world.crust.book(&self.before, &world.z, &self.base, dt_yr);

@@ -113,18 +113,7 @@ impl Sim {
 
     /// The layers under the land, node by node.
     pub fn underground(&self) -> Underground<'_> {
-        let world = self.world();
-        Underground {
-            stratigraphy: &world.stratigraphy,
-            base: world.strata.base(),
-            folds: world
-                .strata
-                .folds()
-                .map(|fold| (fold.interface, fold.raised.as_slice()))
-                .collect(),
-            sediment: &world.sediment.thickness,
-            root: &world.crust.root,
-        }
+        self.world().underground()
     }
 
     /// The cross-section that a side of the table looks at.

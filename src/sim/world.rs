@@ -5,10 +5,11 @@ use std::sync::Arc;
 use super::folding::LayerSkeleton;
 use crate::isostasy::Crust;
 use crate::mountain::PlateSet;
-use crate::mountain::fold::FoldEdit;
+use crate::mountain::fold::{FoldDrive, FoldEdit};
 use crate::mountain::strata::Strata;
 use crate::rock::{Stratigraphy, preset};
-use crate::terrain::{Sediment, StartLand, Tin, TinError, resample};
+use crate::survey::Underground;
+use crate::terrain::{Resampling, Sediment, StartLand, Tin, TinError};
 use crate::units::PlanMap;
 
 /// Everything that the land is at one moment. Parameters and scratch memory live elsewhere, so a snapshot is a clone.
@@ -32,6 +33,10 @@ pub struct World {
     pub skeletons: Vec<LayerSkeleton>,
     /// What visitors have changed about folds.
     pub fold_edits: Vec<FoldEdit>,
+    /// What has made the layers fold so far: the drive of each moment times its years, so that rates are metres, and the
+    /// limit is metres per metre of wavelength. Pairs of layers that do not fold while the land is sculpted fold by it
+    /// when it is refined. None where nothing has folded.
+    pub folded: Option<Arc<FoldDrive>>,
     /// Loose sediment on the rock.
     pub sediment: Sediment,
     /// How the crust floats.
@@ -79,6 +84,7 @@ impl World {
             strata,
             skeletons: Vec::new(),
             fold_edits: Vec::new(),
+            folded: None,
             sediment: Sediment::new(nodes_laid),
             crust: Crust::new(nodes_laid),
             plates: PlateSet::default(),
@@ -93,55 +99,66 @@ impl World {
         Self { stratigraphy, ..self }
     }
 
-    /// The same world on other nodes: heights and displacements are interpolated.
+    /// The same world on the nodes of `tin`, which `places` locates on the nodes it has: heights go over smoothly,
+    /// displacements linearly.
+    ///
+    /// # Panics
+    /// If `places` are not as many as the nodes.
     #[must_use]
-    pub fn resampled(&self, tin: Arc<Tin>) -> Self {
-        let Self {
-            seed,
-            map,
-            tin: from,
-            time_yr,
-            z,
-            stratigraphy,
-            strata,
-            skeletons,
-            fold_edits,
-            sediment,
-            crust,
-            plates,
-            last_push_yr,
-            totals,
-        } = self;
-        let mut strata = strata.clone();
-        strata.resample(|values| resample(from, &tin, values));
+    pub fn resampled(&self, tin: Arc<Tin>, places: &Resampling<'_>) -> Self {
+        let z = places.smooth(&self.z);
+        assert_eq!(z.len(), tin.len(), "one place per node");
+        let mut strata = self.strata.clone();
+        strata.resample(|values| places.linear(values));
         Self {
-            seed: *seed,
-            skeletons: skeletons.clone(),
-            fold_edits: fold_edits.clone(),
+            z,
+            strata,
             sediment: Sediment {
-                thickness: resample(from, &tin, &sediment.thickness),
+                thickness: places.linear(&self.sediment.thickness),
                 // What waits on a slope is less than a step brings.
                 debris: vec![0.0; tin.len()],
             },
             crust: Crust {
-                root: resample(from, &tin, &crust.root),
-                unanswered: resample(from, &tin, &crust.unanswered),
+                root: places.linear(&self.crust.root),
+                unanswered: places.linear(&self.crust.unanswered),
             },
-            map: *map,
-            time_yr: *time_yr,
-            z: resample(from, &tin, z),
-            stratigraphy: Arc::clone(stratigraphy),
-            strata,
-            plates: plates.clone(),
-            last_push_yr: *last_push_yr,
-            totals: *totals,
+            stratigraphy: Arc::clone(&self.stratigraphy),
+            folded: self.folded.clone(),
+            skeletons: self.skeletons.clone(),
+            fold_edits: self.fold_edits.clone(),
+            plates: self.plates.clone(),
             tin,
+            ..*self
         }
+    }
+
+    /// The layers under the land, node by node.
+    pub fn underground(&self) -> Underground<'_> {
+        Underground {
+            stratigraphy: &self.stratigraphy,
+            base: self.strata.base(),
+            folds: self
+                .strata
+                .folds()
+                .map(|fold| (fold.interface, fold.raised.as_slice()))
+                .collect(),
+            sediment: &self.sediment.thickness,
+            root: &self.crust.root,
+        }
+    }
+
+    /// Books `years` of what makes layers fold.
+    pub(super) fn has_folded(&mut self, drive: &FoldDrive, years: f64) {
+        let sum = self
+            .folded
+            .get_or_insert_with(|| Arc::new(FoldDrive::still(drive.cos2.grid)));
+        Arc::make_mut(sum).add(drive, years);
     }
 
     /// Memory that a snapshot of this world needs, bytes (the shared nodes not counted).
     pub fn snapshot_bytes(&self) -> usize {
-        5 * size_of_val(self.z.as_slice()) + self.strata.bytes()
+        let folded = self.folded.as_ref().map_or(0, |drive| drive.bytes());
+        5 * size_of_val(self.z.as_slice()) + self.strata.bytes() + folded
     }
 
     /// Memory of what is left of earlier pushes here and not in `before`, bytes: snapshots share the rest.

@@ -84,6 +84,39 @@ impl FoldDrive {
         })
     }
 
+    /// True where it makes nothing fold.
+    pub fn is_still(&self) -> bool {
+        let still = |field: &Field| field.data.iter().all(|&rate| rate == 0.0);
+        still(&self.cos2) && still(&self.sin2)
+    }
+
+    /// Adds `years` of another drive on the same grid to a sum of drives, whose rates are metres. Drives that are not
+    /// finite add nothing.
+    ///
+    /// # Panics
+    /// If the grids differ.
+    pub fn add(&mut self, drive: &Self, years: f64) {
+        let fields = [
+            (&mut self.cos2, &drive.cos2),
+            (&mut self.sin2, &drive.sin2),
+            (&mut self.limit, &drive.limit),
+        ];
+        for (sum, rates) in fields {
+            assert_eq!(sum.grid, rates.grid, "one grid");
+            for (sum, &rate) in sum.data.iter_mut().zip(&rates.data) {
+                let part = (f64::from(rate) * years) as f32;
+                if part.is_finite() {
+                    *sum += part;
+                }
+            }
+        }
+    }
+
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        3 * size_of_val(self.cos2.data.as_slice())
+    }
+
     /// The drive at `p` (plan metres), interpolated.
     pub fn at(&self, p: DVec2) -> Drive {
         let [x, y] = self.doubled(p);
