@@ -81,6 +81,7 @@ impl Table {
             settings: &self.settings,
             health: &Health::default(),
             notice: None,
+            final_done: None,
             scale: scale_for(SCREEN, 1.0),
         };
         let shown = self.panel.show(context, &view);
@@ -355,6 +356,7 @@ fn show_all(
             settings: &settings,
             health: &health,
             notice,
+            final_done: Some(0.4),
             scale: scale_for(Vec2::splat(scale), points_per_mm),
         };
         let input = egui::RawInput {

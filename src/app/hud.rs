@@ -385,6 +385,7 @@ impl Hud {
                 quarantined: frame.quarantine.uplift_nodes + frame.quarantine.steps,
             },
             notice: table.notice(),
+            final_done: table.final_done(),
             scale: staff::scale_for(screen.size(), per_mm),
         };
         self.panel.show(context, &view)

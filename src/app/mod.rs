@@ -36,7 +36,7 @@ use winit::event_loop::EventLoop;
 use crate::gesture::command::Mode;
 use crate::input::pile::PileError;
 use crate::settings::{Settings, SettingsError};
-pub use save::{SaveLand, SavedLand};
+pub use save::{LongWork, SaveLand, SavedLand};
 
 /// How the table opens.
 #[derive(Clone)]

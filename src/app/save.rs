@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
@@ -10,8 +11,34 @@ use crate::live::Session;
 use crate::settings::Settings;
 use crate::sim::Checkpoint;
 
-/// Writes a land into a folder of its own. The command line has one: what `replay` writes.
-pub type SaveLand = Arc<dyn Fn(&SavedLand, &Path) -> Result<(), String> + Send + Sync>;
+/// Writes a land into a folder of its own: as it is, or at final quality, which is long work. The command line has one:
+/// what `replay` writes.
+pub type SaveLand = Arc<dyn Fn(&SavedLand, &Path, Option<&LongWork>) -> Result<(), String> + Send + Sync>;
+
+/// Work that takes a minute or two: somebody watches it, and may stop it.
+#[derive(Debug, Default)]
+pub struct LongWork {
+    per_mille: AtomicU32,
+    cancelled: AtomicBool,
+}
+
+impl LongWork {
+    /// Says how much is done, 0–1. False when the work is to stop and leave nothing behind.
+    pub fn goes_on(&self, done: f64) -> bool {
+        self.per_mille.store((done * 1000.0) as u32, Ordering::Relaxed);
+        !self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// How much is done, 0–1.
+    pub fn done(&self) -> f32 {
+        self.per_mille.load(Ordering::Relaxed) as f32 / 1000.0
+    }
+
+    /// Asks the work to stop.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+}
 
 /// A session as it was when somebody asked for its land.
 pub type SavedLand = Checkpoint;
@@ -34,6 +61,8 @@ enum Waiting {
 pub(super) struct Saver {
     save: SaveLand,
     waiting: Option<Waiting>,
+    /// The final land that is on its way.
+    long: Option<Arc<LongWork>>,
     notice: Option<(String, u64)>,
     now_us: u64,
 }
@@ -43,6 +72,7 @@ impl Saver {
         Self {
             save,
             waiting: None,
+            long: None,
             notice: None,
             now_us: 0,
         }
@@ -52,6 +82,26 @@ impl Saver {
     pub(super) fn ask(&mut self, session: &Session) {
         if self.waiting.is_none() {
             self.waiting = Some(Waiting::Land(session.save_world()));
+        }
+    }
+
+    /// Asks for the final land. What is being saved is finished first.
+    pub(super) fn ask_final(&mut self, session: &Session) {
+        if self.waiting.is_none() {
+            self.long = Some(Arc::default());
+            self.ask(session);
+        }
+    }
+
+    /// How much of a final land is done, 0–1; none while there is none.
+    pub(super) fn final_done(&self) -> Option<f32> {
+        self.long.as_ref().map(|work| work.done())
+    }
+
+    /// Nobody wants the final land any more.
+    pub(super) fn cancel_final(&self) {
+        if let Some(work) = &self.long {
+            work.cancel();
         }
     }
 
@@ -93,10 +143,11 @@ impl Saver {
             None => None,
             Some(Waiting::Land(land)) => match land.try_recv() {
                 Ok(land) => {
-                    let save = Arc::clone(&self.save);
+                    let (save, long) = (Arc::clone(&self.save), self.long.clone());
+                    let name = if long.is_some() { "final-" } else { "table-" };
                     self.write(move || {
-                        let path = free_name("table-", "")?;
-                        save(&land, &path)?;
+                        let path = free_name(name, "")?;
+                        save(&land, &path, long.as_deref())?;
                         Ok(path)
                     })
                 }
@@ -125,6 +176,11 @@ impl Saver {
             },
         };
         self.waiting = next;
+        if self.waiting.is_none() {
+            self.long = None;
+        } else if let Some(work) = &self.long {
+            self.say(&format!("final land: {:.0} %", 100.0 * work.done()));
+        }
     }
 
     fn write(&mut self, work: impl FnOnce() -> Result<PathBuf, String> + Send + 'static) -> Option<Waiting> {

@@ -399,6 +399,21 @@ impl Table {
         self.saver.ask(self.worlds.session());
     }
 
+    /// The land is to be saved at final quality.
+    pub(super) fn save_final(&mut self) {
+        self.saver.ask_final(self.worlds.session());
+    }
+
+    /// How much of a final land is done, 0–1.
+    pub(super) fn final_done(&self) -> Option<f32> {
+        self.saver.final_done()
+    }
+
+    /// Nobody wants the final land any more.
+    pub(super) fn cancel_final(&self) {
+        self.saver.cancel_final();
+    }
+
     /// The last minute of contacts is to be saved.
     pub(super) fn save_contacts(&mut self) {
         self.saver.take_contacts(self.worlds.ring_file());

@@ -296,6 +296,8 @@ impl Open {
             }
             StaffAction::SaveContacts => self.table.save_contacts(),
             StaffAction::SaveLand => self.table.save(),
+            StaffAction::FinalLand => self.table.save_final(),
+            StaffAction::CancelFinal => self.table.cancel_final(),
             StaffAction::Clean => {
                 door.close();
                 self.table.clean(now_us);

@@ -286,7 +286,7 @@ fn erode(
         under: None,
         elapsed_yr: args.years,
     };
-    land.write(out, args.common.size, pictures, &mut timings)?;
+    land.write(out, args.common.size(), pictures, &mut timings)?;
     write_json(out, "report.json", &report)?;
     write_json(out, "timings.json", &timings.finish())?;
     Console::result(&out.path().join(args.common.picture.shown()).display().to_string());

@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Timings, png, write_json};
-use super::{Common, PictureChoice, PlanetArgs, ReplayArgs, SeaFloorChoice, Switch, on_threads};
+use super::{Common, PictureChoice, PlanetArgs, Quality, ReplayArgs, SeaFloorChoice, Switch, on_threads};
 use crate::export::OutDir;
 use crate::export::planet::{self as files, Rotation};
 use crate::gesture::contact::InputFrame;
@@ -52,6 +52,8 @@ pub(super) fn check_options(path: &Path, args: &ReplayArgs) -> Result<(), Failur
         ("--layers", args.layers != preset::names()[0]),
         ("--isostasy", args.isostasy == Switch::Off),
         ("--deposition", args.deposition == Switch::Off),
+        ("--quality final", args.quality == Quality::Final),
+        ("--region", args.region.is_some()),
     ];
     let flat = flat.iter().find(|(_, given)| *given);
     if let Some((option, _)) = flat {
@@ -195,7 +197,7 @@ impl Run<'_> {
         let mut maps = MapWriter {
             every_my: self.every_my,
             out: &out,
-            width: self.common.size,
+            width: self.common.size(),
             drawn: 0,
             next_my: 0.0,
         };
@@ -251,11 +253,11 @@ impl Run<'_> {
         let surface = sim.surface();
         timings.lap("surface");
         if self.common.picture.has_map() {
-            write_pictures(out, &surface, sim, self.common.size)?;
+            write_pictures(out, &surface, sim, self.common.size())?;
         }
         timings.lap("pictures");
         past.end(&surface);
-        files::write(out, &surface, &past.rotations, self.common.size as usize).map_err(Failure::other)?;
+        files::write(out, &surface, &past.rotations, self.common.size() as usize).map_err(Failure::other)?;
         timings.lap("files");
         let report = GlobeReport::of_session(self.title, sim, &surface);
         write_json(out, "report.json", &report)?;

@@ -8,9 +8,11 @@ mod export_evemu;
 mod failure;
 mod globe;
 mod import;
+mod memory;
 mod output;
 #[cfg(feature = "app")]
 mod record;
+mod refine;
 #[cfg(feature = "app")]
 mod render;
 mod replay;
@@ -25,6 +27,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec2;
 
+use crate::sim::refine::Region;
 use crate::slice::parse_ends;
 use console::Console;
 use failure::Failure;
@@ -153,12 +156,31 @@ struct Common {
     /// Nodes of the terrain, samples of a planet (default: the file's, else 60000).
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
     nodes: Option<u32>,
-    /// Pixels along the width of pictures and height maps, such as 1009, 2017, 4033, 8129 or a power of two.
-    #[arg(long, value_name = "N", default_value_t = 1920, value_parser = clap::value_parser!(u32).range(16..=16384))]
-    size: u32,
+    /// Pixels along the width of pictures and height maps, such as 1009, 2017, 4033, 8129 or a power of two (default:
+    /// 1920, at final quality 3840).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=16384))]
+    size: Option<u32>,
     /// Which picture to draw.
     #[arg(long, value_enum, default_value_t = PictureChoice::Map)]
     picture: PictureChoice,
+}
+
+impl Common {
+    /// Pixels along the width where the user names none.
+    const SIZE: u32 = 1920;
+
+    fn size(&self) -> u32 {
+        self.size.unwrap_or(Self::SIZE)
+    }
+}
+
+/// How finely a land is worked out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Quality {
+    /// As the table shows it.
+    Live,
+    /// A million nodes (or --nodes), all folds, and pictures 3840 pixels wide: takes a minute or two.
+    Final,
 }
 
 #[derive(Debug, Args)]
@@ -170,6 +192,13 @@ struct ReplayArgs {
     /// Model years that the world runs on after the last push (default: the file's, else 5e6, and 20e6 on a globe).
     #[arg(long, allow_negative_numbers = true)]
     years: Option<f64>,
+    /// How finely the land is worked out.
+    #[arg(long, value_enum, default_value_t = Quality::Live)]
+    quality: Quality,
+    /// Also refine a box of the final land: its south-west corner and its side in km (4 to 16), and metres between nodes
+    /// (2 to 10; default 5), into `region/`.
+    #[arg(long, value_name = "X,Y,SIDE[,METRES]", value_parser = refine::region, allow_hyphen_values = true)]
+    region: Option<Region>,
     /// Rock under the land: a preset (plain, jura, zagros, andes, digne, …), or a TOML file.
     #[arg(long, value_name = "NAME|FILE", default_value = "plain")]
     layers: String,

@@ -74,7 +74,7 @@ pub(super) struct Pictures {
     choice: PictureChoice,
     slices: Vec<[DVec2; 2]>,
     #[cfg(feature = "app")]
-    gpu: Option<crate::gpu::Gpu>,
+    gpu: Option<std::sync::Arc<crate::gpu::Gpu>>,
 }
 
 impl Pictures {
@@ -82,6 +82,16 @@ impl Pictures {
     pub(super) fn with_slices(mut self, slices: &[[DVec2; 2]]) -> Self {
         self.slices = slices.to_vec();
         self
+    }
+
+    /// The same pictures without slices, for another land.
+    pub(super) fn without_slices(&self) -> Self {
+        Self {
+            choice: self.choice,
+            slices: Vec::new(),
+            #[cfg(feature = "app")]
+            gpu: self.gpu.clone(),
+        }
     }
 
     /// Fails where the rendered picture alone is wanted and nothing can draw it; warns where the map is drawn as well.
@@ -97,7 +107,7 @@ impl Pictures {
             choice,
             slices: Vec::new(),
             #[cfg(feature = "app")]
-            gpu: render::adapter(choice)?,
+            gpu: render::adapter(choice)?.map(std::sync::Arc::new),
         })
     }
 

@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings, draw_frame, land_of, write_json};
-use super::{Common, PictureChoice, ReplayArgs, Switch, globe, on_threads, slice};
+use super::{Common, PictureChoice, Quality, ReplayArgs, Switch, globe, on_threads, refine, slice};
 use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
@@ -39,10 +39,12 @@ pub(super) fn builtin(console: Console) -> Result<(), Failure> {
             seed: None,
             threads: None,
             nodes: None,
-            size: 1920,
+            size: None,
             picture: PictureChoice::Map,
         },
         years: None,
+        quality: Quality::Live,
+        region: None,
         layers: preset::names()[0].to_owned(),
         paper: false,
         every: None,
@@ -92,7 +94,9 @@ pub(super) fn run(args: &ReplayArgs, console: Console) -> Result<(), Failure> {
     let of_mode = |mode| sessions.iter().filter(move |(_, file)| file.header.mode == mode);
     for (_, file) in of_mode(Mode::Mountain) {
         // A slice that misses the land is refused before the work.
-        slice::on_land(&args.slices, plan(file).extent())?;
+        let land = plan(file).extent();
+        slice::on_land(&args.slices, land)?;
+        refine::check(args, live_nodes(file, args), land)?;
     }
     let pictures = Pictures::new(args.common.picture)?.with_slices(&args.slices);
     on_threads(args.common.threads, || {
@@ -127,15 +131,19 @@ fn plan(file: &GestureFile) -> PlanMap {
     PlanMap::new(file.header.size_mm, DEFAULT_SHORT_SIDE)
 }
 
+/// Nodes of the land while it is sculpted. At final quality the user names those of the final land.
+fn live_nodes(file: &GestureFile, args: &ReplayArgs) -> usize {
+    let asked = args.common.nodes.filter(|_| args.quality == Quality::Live);
+    asked
+        .map(u64::from)
+        .or(file.header.nodes)
+        .unwrap_or(DEFAULT_NODES) as usize
+}
+
 /// The session of `file`, before its first tick.
 fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
     let header = &file.header;
-    let nodes = args
-        .common
-        .nodes
-        .map(u64::from)
-        .or(header.nodes)
-        .unwrap_or(DEFAULT_NODES) as usize;
+    let nodes = live_nodes(file, args);
     let seed = args.common.seed.or(header.seed).unwrap_or(DEFAULT_SEED);
     let mut params = if args.paper {
         SimParams::paper()
@@ -177,7 +185,7 @@ fn play(
     let mut frames = FrameWriter {
         every: args.every,
         out: &out,
-        size: args.common.size,
+        size: args.common.size(),
         drawn: 0,
     };
     for frame in &file.frames {
@@ -197,7 +205,10 @@ fn play(
     bar.finish_and_clear();
     timings.lap("run_on");
 
-    write_session(&sim, &title, &out, (args.common.size, pictures), timings)?;
+    match args.quality {
+        Quality::Live => write_session(&sim, &title, &out, (args.common.size(), pictures), timings)?,
+        Quality::Final => refine::play(sim, args, (&title, &out), pictures, timings, console)?,
+    }
     Console::result(&out.path().join(args.common.picture.shown()).display().to_string());
     Ok(())
 }
@@ -212,6 +223,7 @@ pub(super) fn write_session(
 ) -> Result<(), Failure> {
     let flow = sim.flow();
     let report = Report::of_session(title, sim, &flow);
+    timings.lap("report");
     let k = vec![sim.params().erosion.k; sim.world().tin.len()];
     land_of(sim, &flow, &k, title).write(out, size, pictures, &mut timings)?;
     write_json(out, "report.json", &report)?;

@@ -8,8 +8,8 @@ use clap::ValueEnum;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings};
-use super::{PictureChoice, RecordArgs, TableArgs, replay};
-use crate::app::{self, AppError, Options, SavedLand};
+use super::{PictureChoice, RecordArgs, TableArgs, refine, replay};
+use crate::app::{self, AppError, LongWork, Options, SavedLand};
 use crate::export::OutDir;
 use crate::gesture::command::Mode;
 use crate::sim::Sim;
@@ -67,7 +67,7 @@ fn options(args: &TableArgs, kiosk: bool) -> Options {
         settings: args.settings.clone(),
         layers: args.layers.clone(),
         metrics: args.metrics.clone(),
-        save: Arc::new(|land, path| save_land(land, path).map_err(|failure| failure.to_string())),
+        save: Arc::new(|land, path, long| save_land(land, path, long).map_err(|failure| failure.to_string())),
     }
 }
 
@@ -77,8 +77,15 @@ const SAVED_SIZE: u32 = 1920;
 const SAVED_TITLE: &str = "Orogen";
 
 /// What `replay` writes, from a table that runs on meanwhile.
-fn save_land(land: &SavedLand, path: &Path) -> Result<(), Failure> {
-    let timings = Timings::start();
+fn save_land(land: &SavedLand, path: &Path, long: Option<&LongWork>) -> Result<(), Failure> {
+    let mut timings = Timings::start();
+    if let Some(work) = long {
+        let land = refine::watched(land, work)?;
+        timings.lap("refine");
+        let out = OutDir::create(path).map_err(Failure::input)?;
+        let pictures = Pictures::new(PictureChoice::Map)?;
+        return replay::write_session(&land, SAVED_TITLE, &out, (refine::SIZE, &pictures), timings);
+    }
     let out = OutDir::create(path).map_err(Failure::input)?;
     let sim = Sim::resume(land.clone());
     let pictures = Pictures::new(PictureChoice::Map)?;
@@ -112,6 +119,20 @@ pub(super) fn window_size(text: &str) -> Result<[u32; 2], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_final_land_that_is_cancelled_leaves_nothing_behind() {
+        let map = crate::units::PlanMap::new(glam::DVec2::new(1209.6, 680.4), 100e3);
+        let world = crate::sim::World::new(map, 300, 1).unwrap();
+        let land = Sim::new(world, crate::sim::SimParams::default()).checkpoint();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("final-001");
+        let work = LongWork::default();
+        work.cancel();
+        let refused = save_land(&land, &path, Some(&work)).unwrap_err();
+        assert_eq!(refused.to_string(), "cancelled");
+        assert!(!path.exists());
+    }
 
     #[test]
     fn window_sizes() {

@@ -1,6 +1,6 @@
 //! The menu: pages on the left, what they hold on the right.
 
-use egui::{Button, Layout, RichText, Ui, Vec2, vec2};
+use egui::{Button, Layout, ProgressBar, RichText, Ui, Vec2, vec2};
 
 use super::{Armed, Page, StaffAction, StaffPanel, StaffView, TARGET, health};
 use crate::settings::KEYS;
@@ -62,8 +62,24 @@ impl StaffPanel {
 
     fn actions(&mut self, ui: &mut Ui, view: &StaffView<'_>, actions: &mut Vec<StaffAction>) {
         let size = vec2(ui.available_width().min(470.0 * view.scale), 64.0 * view.scale);
+        if let Some(done) = view.final_done {
+            let bar = ProgressBar::new(done).text(format!("Final land: {:.0} %", 100.0 * done));
+            ui.add_sized(size, bar);
+            if ui.add_sized(size, Button::new("Cancel the final land")).clicked() {
+                actions.push(StaffAction::CancelFinal);
+            }
+        } else {
+            for (name, action) in [
+                ("Save the land", StaffAction::SaveLand),
+                ("Make the final land: some minutes", StaffAction::FinalLand),
+            ] {
+                if ui.add_sized(size, Button::new(name)).clicked() {
+                    actions.push(action);
+                    self.armed = None;
+                }
+            }
+        }
         for (name, action) in [
-            ("Save the land", StaffAction::SaveLand),
             ("Layers of rock", StaffAction::Layers),
             ("Save the last 60 s of touches", StaffAction::SaveContacts),
             ("Clean the table: 30 s without touch", StaffAction::Clean),

@@ -48,6 +48,10 @@ pub enum StaffAction {
     SaveContacts,
     /// The land is written to files.
     SaveLand,
+    /// The land is worked out at final quality, and written.
+    FinalLand,
+    /// Not after all.
+    CancelFinal,
     /// Touches do nothing for a while, so that the table can be wiped.
     Clean,
     /// Four crosses are touched, to show how the touching surface lies.
@@ -103,6 +107,8 @@ pub struct StaffView<'a> {
     pub health: &'a Health<'a>,
     /// What became of the last action ("saved as …", or why not); shown at the foot of the menu.
     pub notice: Option<&'a str>,
+    /// How much of a final land is done, 0–1; none while none is made.
+    pub final_done: Option<f32>,
     /// Size of letters and targets, as [`scale_for`] says.
     pub scale: f32,
 }
