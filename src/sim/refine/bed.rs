@@ -129,13 +129,14 @@ mod tests {
         let mut after = Flow::new(&fine);
         after.route(&fine, &heights, Outlets::Border, None);
         let least = 40.0 * coarse.spacing().powi(2);
-        let rivers = |tin: &Tin, flow: &Flow| -> Vec<DVec2> {
+        let rivers = |tin: &Tin, flow: &Flow, least: f64| -> Vec<DVec2> {
             tin.nodes()
                 .filter(|node| flow.drainage()[node.index()] > least && !tin.is_border(*node))
                 .map(|node| tin.position(node))
                 .collect()
         };
-        let (before, after) = (rivers(&coarse, &flow), rivers(&fine, &after));
+        // The land between rivers is not the same: a half of the area is known anywhere along one.
+        let (before, after) = (rivers(&coarse, &flow, least), rivers(&fine, &after, 0.5 * least));
         assert!(before.len() > 20, "{}", before.len());
         for p in before {
             let distance = after.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
