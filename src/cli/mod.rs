@@ -398,7 +398,7 @@ struct BenchArgs {
     /// JSON lines instead of a table.
     #[arg(long)]
     json: bool,
-    /// Also a million nodes (about a minute).
+    /// Also a million nodes (about a minute more).
     #[arg(long)]
     million: bool,
     /// Threads to compute with (default: all cores).

@@ -15,11 +15,20 @@ impl Bench {
 
         /// Time between two frames, s.
         const FRAME_S: f32 = 0.033;
+        /// The size that the goal for frames is about.
+        const GOAL_SIZE: [u32; 2] = [1920, 1080];
+
         let gpu = match Gpu::offscreen() {
             Ok(gpu) => gpu,
             Err(error) => return self.note(&format!("frames: left out: {error}")),
         };
         self.note(&format!("frames: {} ({:?})", gpu.info.name, gpu.info.backend));
+        let (runs, all) = if gpu.is_software() {
+            self.circumstances.software = Some(gpu.info.name.clone());
+            (5, 11)
+        } else {
+            (21, 501)
+        };
         let surface = mountains(640, 360);
         let style = LandStyle::default();
         let eye = flight(&Focus::of(&surface), &style, 0.0);
@@ -35,9 +44,23 @@ impl Bench {
                 let frame = |canvas: &mut Canvas| canvas.draw(&gpu, &camera, &style, FRAME_S).is_ok();
                 // The first frames make pipelines and whole sheets.
                 while frame(&mut canvas) && !canvas.land.settled() {}
-                self.time((stage, pixels, "settled"), None, 21, || frame(&mut canvas));
+                self.time((stage, pixels, "settled"), None, runs, || frame(&mut canvas));
+                if size == GOAL_SIZE {
+                    // A new land for each of them, as on a table that keeps up with its hands.
+                    let key = (stage, pixels, "p99");
+                    self.time_part(
+                        key,
+                        None,
+                        (all, 0.99),
+                        || (),
+                        |()| {
+                            canvas.land.show(&gpu, &surface);
+                            frame(&mut canvas)
+                        },
+                    );
+                }
                 canvas.land.show(&gpu, &surface);
-                self.time((stage, pixels, "growing"), None, 21, || frame(&mut canvas));
+                self.time((stage, pixels, "growing"), None, runs, || frame(&mut canvas));
             }
         }
         if let Ok(mut canvas) = Canvas::new(&gpu, [64, 36], RenderQuality::SOFTWARE) {
