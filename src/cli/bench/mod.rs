@@ -4,6 +4,7 @@
 mod frames;
 mod globe;
 mod goals;
+mod judge;
 mod land;
 mod picture;
 mod plates;
@@ -20,7 +21,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::{BenchArgs, on_threads};
 use crate::units::{Extent, KM};
-use goals::Circumstances;
+use judge::Circumstances;
 
 /// The square and the uplift at which the literature's figures were taken: 100 × 100 km, 5e-4 m/yr.
 const SQUARE: Extent = Extent {
@@ -49,6 +50,9 @@ struct Row {
     peak_mib: Option<f64>,
     /// What the stage's source reports for this size, ms.
     paper_ms: Option<f64>,
+    /// Part of their time that the threads waited for a processor that others had, where the system tells.
+    #[serde(skip)]
+    waited: Option<f64>,
 }
 
 /// Stage, size and state: what a row is known by.
@@ -80,7 +84,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         bench.frames();
         Ok(bench)
     })?;
-    goals::print(&bench.rows, &bench.circumstances, args.json);
+    judge::print(&bench.rows, &bench.circumstances, args.json);
     bench.note(&format!("\n{}", verdict::verdict(&bench.rows)));
     Ok(())
 }
@@ -120,6 +124,7 @@ impl Bench {
         mut work: impl FnMut(&mut S) -> T,
     ) -> (S, T) {
         reset_peak();
+        let before = Processors::now();
         let mut times = Vec::with_capacity(runs);
         let (last, result) = loop {
             let mut own = fresh();
@@ -144,6 +149,9 @@ impl Bench {
             cpu_ms,
             peak_mib: peak_mib(),
             paper_ms,
+            waited: before
+                .zip(Processors::now())
+                .map(|(then, now)| now.waited_since(then)),
         };
         self.print(&row);
         self.rows.push(row);
@@ -189,6 +197,34 @@ fn quantile(samples: &mut [f64], part: f64) -> f64 {
         .unwrap_or(0.0)
 }
 
+/// What the threads of this process have had of the processors so far, ns.
+#[derive(Clone, Copy, Debug)]
+struct Processors {
+    ran: u64,
+    waited: u64,
+}
+
+impl Processors {
+    /// Only Linux tells.
+    fn now() -> Option<Self> {
+        let mut all = Self { ran: 0, waited: 0 };
+        for task in std::fs::read_dir("/proc/self/task").ok()? {
+            let times = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+            let mut times = times.split_whitespace().map(str::parse::<u64>);
+            all.ran += times.next()?.ok()?;
+            all.waited += times.next()?.ok()?;
+        }
+        Some(all)
+    }
+
+    /// Part of the time since `then` that threads waited, 0–1.
+    fn waited_since(self, then: Self) -> f64 {
+        let ran = self.ran.saturating_sub(then.ran) as f64;
+        let waited = self.waited.saturating_sub(then.waited) as f64;
+        waited / (ran + waited).max(1.0)
+    }
+}
+
 /// Starts a new measurement of the highest memory use. Only Linux tells, and only there it can be reset.
 fn reset_peak() {
     // Refused in some containers; then the figure is that of the whole run so far.
@@ -215,6 +251,17 @@ mod tests {
         assert_eq!(quantile(&mut [5.0], QUIET), 5.0);
         // Of two it is the quicker.
         assert_eq!(quantile(&mut [5.0, 4.0], QUIET), 4.0);
+    }
+
+    #[test]
+    fn waiting_is_a_part_of_the_time() {
+        let then = Processors { ran: 100, waited: 50 };
+        let now = Processors {
+            ran: 400,
+            waited: 150,
+        };
+        assert_eq!(now.waited_since(then), 0.25);
+        assert_eq!(then.waited_since(then), 0.0);
     }
 
     #[test]

@@ -67,6 +67,7 @@ mod tests {
             cpu_ms: wall_ms,
             peak_mib: None,
             paper_ms: None,
+            waited: None,
         };
         figures.iter().map(row).collect()
     }
