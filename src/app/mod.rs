@@ -15,6 +15,7 @@ mod layers;
 mod listen;
 mod log;
 mod metrics;
+mod nodes;
 mod record;
 mod save;
 mod screen;

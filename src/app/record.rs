@@ -35,10 +35,16 @@ impl Recorder {
         Ok(Self(Stage::Waiting(File::create_new(path)?, header)))
     }
 
-    /// A fresh land has begun from `seed`. Before the first touch the recording is of that; after it, it is over.
-    pub(super) fn fresh(&mut self, seed: u64) {
+    /// A fresh land has begun from `seed`, of so many nodes if it is the mountain's. Before the first touch the recording is
+    /// of that; after it, it is over.
+    pub(super) fn fresh(&mut self, seed: u64, nodes: usize) {
         match &mut self.0 {
-            Stage::Waiting(_, header) => header.seed = Some(seed),
+            Stage::Waiting(_, header) => {
+                header.seed = Some(seed);
+                if header.mode == Mode::Mountain {
+                    header.nodes = Some(nodes as u64);
+                }
+            }
             Stage::Writing { .. } => {
                 tracing::info!("the recording is over: a fresh land begins");
                 self.0 = Stage::Over;

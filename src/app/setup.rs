@@ -26,25 +26,10 @@ const COLUMNS: usize = 1024;
 const SOFTWARE_COLUMNS: usize = 512;
 /// Samples of the planet where processor cores also draw the picture.
 const SOFTWARE_SAMPLES: usize = 24_000;
-/// Nodes of the land where the settings leave it to the program: on many cores, on few, and on few that also draw.
-const NODES: [usize; 3] = [60_000, 30_000, 15_000];
-/// From so many cores on there are many.
-const MANY_CORES: usize = 8;
 
 /// Columns of the rasters that the session draws.
 pub(super) fn raster_width(software: bool) -> usize {
     if software { SOFTWARE_COLUMNS } else { COLUMNS }
-}
-
-/// Nodes of the land.
-pub(super) fn nodes(settings: &Settings, software: bool) -> usize {
-    let many = std::thread::available_parallelism().is_ok_and(|cores| cores.get() >= MANY_CORES);
-    let chosen = match (many, software) {
-        (true, _) => NODES[0],
-        (false, false) => NODES[1],
-        (false, true) => NODES[2],
-    };
-    settings.quality.nodes.map_or(chosen, |nodes| nodes as usize)
 }
 
 /// Samples of the planet.

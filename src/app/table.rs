@@ -7,11 +7,10 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::eye::Eye;
+use super::nodes::Nodes;
 use super::record::Recorder;
 use super::save::Saver;
-use super::setup::{
-    door_params, globe_params, globe_samples, instrument_params, nodes, raster_width, window_map,
-};
+use super::setup::{door_params, globe_params, globe_samples, instrument_params, raster_width, window_map};
 use super::shows::Shows;
 use super::worlds::Worlds;
 use super::{AppError, Options};
@@ -98,7 +97,6 @@ pub(super) struct Table {
     pub(super) resets: u64,
     pub(super) in_reset: bool,
     pub(super) control_presses: u64,
-    pub(super) nodes: usize,
     now_us: u64,
     cleaning_until_us: u64,
     /// When each contact that is down landed.
@@ -118,24 +116,26 @@ impl Table {
         let size_mm = settings.table_size_mm(size_px);
         let map = settings.plan_map(size_mm);
         let unattended = options.kiosk;
-        let nodes = nodes(settings, software);
+        let fixed = settings.quality.nodes.map(|nodes| nodes as usize);
+        let nodes = Nodes::new(fixed, map, software);
+        let count = nodes.count();
         let mountain = LiveParams {
             map,
-            nodes,
+            nodes: count,
             seed: SEED,
             layers,
             sim: SimParams::default(),
             raster_width: raster_width(software),
             threads: 0,
         };
-        let mut worlds = Worlds::new(mountain, globe_params(size_mm, software))
+        let mut worlds = Worlds::new(mountain, nodes, globe_params(size_mm, software))
             .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
         let home = options.mode.unwrap_or(settings.mode);
         worlds.turn_to(home);
         if let Some(path) = &options.record {
             let (mode, seed) = (worlds.shown(), SEED);
             let nodes = match mode {
-                Mode::Mountain => nodes,
+                Mode::Mountain => count,
                 Mode::Globe => globe_samples(software),
             };
             let header = Header {
@@ -174,7 +174,6 @@ impl Table {
             resets: 0,
             in_reset: false,
             control_presses: 0,
-            nodes,
             now_us: 0,
             cleaning_until_us: 0,
             since_us: BTreeMap::new(),
@@ -277,7 +276,7 @@ impl Table {
 
     /// Nodes of the land.
     pub(super) fn nodes(&self) -> usize {
-        self.nodes
+        self.worlds.nodes()
     }
 
     /// For how long touches still do nothing, so that the table can be wiped, s.
@@ -485,6 +484,9 @@ impl Table {
         }
         self.carry_out_deeds(now_us);
         self.worlds.advance(now_us);
+        if self.lively() {
+            self.worlds.watch_pace(now_us);
+        }
         // (Counts would not do: those of the session before may be in the frame still.)
         if self.worlds.pushed() && !self.shows.playing() {
             self.kiosk.pushed(now_ms);

@@ -46,7 +46,7 @@ impl Table {
             height,
             ..match worlds.globe() {
                 Some(globe) => of_planet(globe),
-                None => of_mountain(worlds.mountain(), self.nodes),
+                None => of_mountain(worlds.mountain(), worlds.nodes()),
             }
         };
         let stream = self.stream.counts();

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
 
+use super::nodes::Nodes;
 use super::record::Recorder;
 use crate::gesture::command::{Command, Mode};
 use crate::gesture::contact::ContactEvent;
@@ -24,6 +25,7 @@ const NO_CUTS: [Option<Cut>; 2] = [None, None];
 pub(super) struct Worlds {
     shown: Mode,
     mountain: Session,
+    nodes: Nodes,
     /// Made when it is shown for the first time.
     globe: Option<GlobeSession>,
     globe_params: LiveGlobeParams,
@@ -32,11 +34,12 @@ pub(super) struct Worlds {
 }
 
 impl Worlds {
-    /// Begins with the mountain; [`Self::turn_to`] shows the other.
-    pub(super) fn new(mountain: LiveParams, globe: LiveGlobeParams) -> std::io::Result<Self> {
+    /// Begins with the mountain, whose later lands have as many nodes as `nodes` says; [`Self::turn_to`] shows the other.
+    pub(super) fn new(mountain: LiveParams, nodes: Nodes, globe: LiveGlobeParams) -> std::io::Result<Self> {
         Ok(Self {
             shown: Mode::Mountain,
             mountain: Session::spawn(mountain)?,
+            nodes,
             globe: None,
             globe_params: globe,
             globe_beats: Arc::default(),
@@ -81,6 +84,11 @@ impl Worlds {
     /// The mountain, whether it is shown or not.
     pub(super) fn mountain(&self) -> &Frame {
         self.mountain.current()
+    }
+
+    /// Nodes of the mountain's land.
+    pub(super) fn nodes(&self) -> usize {
+        self.nodes.count()
     }
 
     /// The mountain's session, to be saved.
@@ -162,25 +170,40 @@ impl Worlds {
         }
     }
 
+    /// Every frame counts, and the mountain's session is to keep up with them.
+    pub(super) fn watch_pace(&mut self, now_us: u64) {
+        if self.globe().is_none() {
+            self.nodes.look(now_us, self.mountain.slowed_us());
+        }
+    }
+
     /// The world that is shown begins again from `seed`.
     pub(super) fn restart(&mut self, seed: u64) {
-        if let Some(recorder) = &mut self.recorder {
-            recorder.fresh(seed);
-        }
         match self.globe.as_ref().filter(|_| self.shown == Mode::Globe) {
             Some(globe) => globe.restart(default_start(seed)),
-            None => self.mountain.restart(Start::Seed(seed)),
+            None => self.restart_mountain(seed),
         }
+        self.note_fresh(seed);
     }
 
     /// Both worlds begin again from `seed`.
     pub(super) fn restart_both(&mut self, seed: u64) {
-        if let Some(recorder) = &mut self.recorder {
-            recorder.fresh(seed);
-        }
-        self.mountain.restart(Start::Seed(seed));
+        self.restart_mountain(seed);
         if let Some(globe) = &self.globe {
             globe.restart(default_start(seed));
+        }
+        self.note_fresh(seed);
+    }
+
+    /// Nobody sees that the next land has more nodes, or fewer.
+    fn restart_mountain(&mut self, seed: u64) {
+        let nodes = self.nodes.fresh();
+        self.mountain.restart(Start::Nodes { seed, nodes });
+    }
+
+    fn note_fresh(&mut self, seed: u64) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.fresh(seed, self.nodes.count());
         }
     }
 

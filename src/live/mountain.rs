@@ -38,6 +38,13 @@ pub struct LiveParams {
 pub enum Start {
     /// The land of a seed. The seed that the session had is quicker than another.
     Seed(u64),
+    /// The land of a seed on so many nodes, which every land from a seed has from then on.
+    Nodes {
+        /// The seed.
+        seed: u64,
+        /// Nodes of the land.
+        nodes: usize,
+    },
     /// A land that was kept. Its table must be that of the session.
     World(Box<World>),
 }
@@ -105,11 +112,14 @@ impl Play for Mountain {
         slot.frame.steps = published.steps;
     }
 
-    /// A session afresh. Where a land cannot be made the one that the session began with comes back.
+    /// A session afresh.
     fn begin(&mut self, start: Start) {
         let world = match start {
-            Start::Seed(seed) if seed == self.first.seed => self.first.clone(),
-            Start::Seed(seed) => new_world(&self.params, seed).unwrap_or_else(|_| self.first.clone()),
+            Start::Seed(seed) => self.land(seed),
+            Start::Nodes { seed, nodes } => {
+                self.params.nodes = nodes;
+                self.land(seed)
+            }
             Start::World(world) => *world,
         };
         self.sim = Sim::new(world.clone(), self.params.sim.clone());
@@ -151,6 +161,17 @@ impl Play for Mountain {
 
     fn ring(&self) -> &Ring {
         &self.ring
+    }
+}
+
+impl Mountain {
+    /// The land of `seed`. Where it cannot be made, the one that the session began with.
+    fn land(&self, seed: u64) -> World {
+        let first = &self.first;
+        if seed == first.seed && self.params.nodes == first.tin.len() {
+            return first.clone();
+        }
+        new_world(&self.params, seed).unwrap_or_else(|_| first.clone())
     }
 }
 

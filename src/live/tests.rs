@@ -157,3 +157,28 @@ fn the_shown_land_is_whole_after_a_panic() {
     assert!(f64::from(shown) <= highest + 50.0, "{shown} of {highest}");
     assert_eq!(frame.surface.height.data.len(), 24 * 14);
 }
+
+#[test]
+fn a_fresh_land_may_have_other_nodes() {
+    let mut table = Table::new();
+    table.ticks(3);
+    let heights = table.session.frame().surface.height.data.len();
+    for (seed, nodes) in [(3, 900), (3, 900), (4, 400)] {
+        table.session.restart(Start::Nodes { seed, nodes });
+        table.ticks(2);
+        let land = table.land();
+        assert_eq!((land.world().seed, land.world().tin.len()), (seed, nodes));
+        assert_eq!(
+            table.session.frame().surface.height.data.len(),
+            heights,
+            "the picture keeps its size"
+        );
+        // The recording of the last minute replays on as many.
+        let bytes = table.session.ring_file().recv().unwrap();
+        let file = read_gesture(bytes.as_slice(), "ring").unwrap();
+        assert_eq!(file.header.nodes, Some(nodes as u64));
+    }
+    table.session.restart(Start::Seed(5));
+    table.ticks(2);
+    assert_eq!(table.land().world().tin.len(), 400, "from then on");
+}
