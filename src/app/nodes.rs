@@ -223,12 +223,12 @@ mod tests {
 
     #[test]
     fn the_land_that_the_machine_can_step_is_chosen() {
-        assert_eq!(on_a_card(8.0).count(), 60_000);
+        assert_eq!(on_a_card(7.0).count(), 60_000);
         assert_eq!(on_a_card(4.0).count(), 100_000);
         assert_eq!(on_a_card(15.0).count(), 30_000);
         assert_eq!(on_a_card(1e6).count(), 15_000, "the fewest must do");
         assert_eq!(
-            Nodes::of(Some(8.0 / 60_000.0), true).count(),
+            Nodes::of(Some(7.0 / 60_000.0), true).count(),
             15_000,
             "cores also draw"
         );
@@ -267,11 +267,11 @@ mod tests {
 
     #[test]
     fn short_sessions_are_judged_together_and_pauses_are_not_counted() {
-        let mut nodes = on_a_card(8.0);
+        let mut nodes = on_a_card(7.0);
         assert_eq!(session(&mut nodes, 14, 0.2), 60_000, "too short to tell");
         assert_eq!(session(&mut nodes, 14, 0.2), 30_000);
         // Another world was shown for a minute: the session jumps, and was not slow.
-        let mut nodes = on_a_card(8.0);
+        let mut nodes = on_a_card(7.0);
         session(&mut nodes, 15, 0.0);
         let (now_us, _) = nodes.pace.seen.expect("a look");
         nodes.look(now_us + 60_000_000, 60_000_000);
@@ -281,7 +281,7 @@ mod tests {
 
     #[test]
     fn making_a_land_is_no_slow_session() {
-        let mut nodes = on_a_card(8.0);
+        let mut nodes = on_a_card(7.0);
         session(&mut nodes, 15, 0.0);
         let (now_us, _) = nodes.pace.seen.expect("a look");
         // It took most of a second, of which the session lost what was too much.
