@@ -6,8 +6,10 @@
 //! [`StartLand`] is the land before the first step, [`TinRaster`] turns nodes into pixels.
 
 mod basin_graph;
+mod dart_board;
 mod erosion;
 mod flow;
+mod hilbert;
 mod lakes;
 mod landslide;
 mod priority_flood;

@@ -4,7 +4,8 @@ use glam::DVec2;
 use spade::handles::FixedVertexHandle;
 use spade::{DelaunayTriangulation, InsertionError, Point2, Triangulation};
 
-use super::sampling::{Samples, hilbert_order, poisson_disc, saturated, saturated_at_most};
+use super::hilbert::hilbert_order;
+use super::sampling::{Samples, poisson_disc, saturated, saturated_at_most};
 use super::voronoi::cell_areas;
 use crate::units::Extent;
 
