@@ -1,133 +1,15 @@
 //! One step of the land: uplift, rivers, landslides.
 
+use rayon::prelude::*;
+
+use super::blocks::{BLOCK, Stretch, sum_in_blocks};
 use super::flow::{Flow, Outlets};
-use super::landslide::Landslides;
-use super::sediment::{Deposition, Moved, Rivers, Sediment, SharedStreamPower};
-use super::stream_power::{Network, StreamPower};
+use super::landslide::{Landslides, Slopes};
+use super::params::{Edges, ErosionParams};
+use super::sediment::{Deposition, Falls, Moved, Sediment};
+use super::shared_stream_power::{Rivers, SharedStreamPower};
+use super::stream_power::{Network, StreamPower, Surface};
 use super::tin::{NodeId, Tin};
-
-/// What the border of the land does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Edges {
-    /// Every border node is an outlet and keeps its height (or [`ErosionParams::base_level`]); it neither rises nor
-    /// erodes. The land drains over all its sides.
-    #[default]
-    Fixed,
-    /// Border nodes rise, erode and slide like any other. Water leaves where a border node has no lower neighbour, or
-    /// where a lake spills over the border; there is always at least one such outlet. Outlets rise with the uplift
-    /// and are cut down only by [`ErosionParams::base_level`].
-    Free,
-}
-
-/// How the land erodes. Passed to each step, never stored in the land.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ErosionParams {
-    /// Erosion constant k of Eq. 5, 1/yr at m = 0.5 and n = 1. Smaller leaves plateaus, larger wears ranges down
-    /// before they are high. The paper: 2.5e-7–8e-7.
-    pub k: f64,
-    /// Exponent m of the drainage area. m/n near 0.5 gives the concavity of real rivers.
-    pub m: f64,
-    /// Exponent n of the slope. 1 is solved exactly; others cost some iterations per node.
-    pub n: f64,
-    /// Talus slope tan θ above which slopes slide. 0 slides everywhere, large values never.
-    pub talus: f64,
-    /// Landslide rate l, m/yr. The steady slope exceeds the talus by U/l.
-    pub landslide_rate: f64,
-    /// Whether slopes slide at all.
-    pub landslides: bool,
-    /// What the border of the land does.
-    pub edges: Edges,
-    /// Height of the base level, m. None: with fixed edges each border node stays where it is, with free edges nothing
-    /// cuts outlets down. Some: with fixed edges all border nodes are set to it; with free edges outlets above it
-    /// incise towards it as if it lay one node spacing beyond the border.
-    pub base_level: Option<f64>,
-    /// How rivers lay down what they carry, in steps that keep sediment. None: what is eroded leaves the land at once,
-    /// as in the paper. Some: n must be 1; with another n nothing is laid down.
-    pub deposition: Option<Deposition>,
-}
-
-impl Default for ErosionParams {
-    fn default() -> Self {
-        Self {
-            k: 1.8e-6,
-            m: 0.5,
-            n: 1.0,
-            // 30°
-            talus: 1.0 / 3.0_f64.sqrt(),
-            landslide_rate: 1e-2,
-            landslides: true,
-            edges: Edges::Fixed,
-            base_level: None,
-            deposition: None,
-        }
-    }
-}
-
-/// Range of a parameter: validates settings and drives controls.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// Field of [`ErosionParams`] or [`Deposition`].
-    pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Smallest value.
-    pub min: f64,
-    /// Largest value.
-    pub max: f64,
-}
-
-/// A parameter outside its range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{} is {found} {}: expected {} to {}", bound.name, bound.unit, bound.min, bound.max)]
-pub struct OutOfBounds {
-    /// The range.
-    pub bound: Bound,
-    /// What was found.
-    pub found: f64,
-}
-
-impl ErosionParams {
-    /// Ranges of the numeric parameters.
-    pub const BOUNDS: [Bound; 5] = [
-        bound("k", "1/yr", 0.0, 1e-2),
-        bound("m", "", 0.0, 2.0),
-        bound("n", "", 0.2, 4.0),
-        bound("talus", "", 0.0, 10.0),
-        bound("landslide_rate", "m/yr", 0.0, 10.0),
-    ];
-
-    /// Checks each parameter against its range; the base level against ±20 km; and n against 1 where there is
-    /// deposition.
-    ///
-    /// # Errors
-    /// The first parameter outside its range (NaN is outside every range).
-    pub fn check(&self) -> Result<(), OutOfBounds> {
-        let values = [self.k, self.m, self.n, self.talus, self.landslide_rate];
-        let base = (
-            bound("base_level", "m", -2e4, 2e4),
-            self.base_level.unwrap_or(0.0),
-        );
-        for (bound, found) in Self::BOUNDS.into_iter().zip(values).chain([base]) {
-            if !(bound.min..=bound.max).contains(&found) {
-                return Err(OutOfBounds { bound, found });
-            }
-        }
-        let Some(deposition) = self.deposition else {
-            return Ok(());
-        };
-        if self.n != 1.0 {
-            return Err(OutOfBounds {
-                bound: bound("n, with deposition,", "", 1.0, 1.0),
-                found: self.n,
-            });
-        }
-        deposition.check()
-    }
-}
-
-pub(super) const fn bound(name: &'static str, unit: &'static str, min: f64, max: f64) -> Bound {
-    Bound { name, unit, min, max }
-}
 
 /// What drives a step, node by node. Each slice holds one value per node.
 #[derive(Clone, Copy, Debug)]
@@ -204,16 +86,24 @@ pub struct Erosion {
     rivers: SharedStreamPower,
     /// Height of the water surface after the step; in use only when there are lakes.
     water: Vec<f64>,
+    /// Heights at the receivers beyond the edges of blocks.
+    beyond: Vec<Vec<f64>>,
 }
 
 impl Erosion {
-    /// Memory for a TIN. Later steps allocate nothing once the lakes have been as many as they get.
+    /// Memory for a TIN. Later steps allocate next to nothing once the lakes have been as many as they get.
     pub fn new(tin: &Tin) -> Self {
+        Self::in_blocks(tin, BLOCK)
+    }
+
+    /// Memory for a TIN whose blocks have so many nodes.
+    pub(super) fn in_blocks(tin: &Tin, block: usize) -> Self {
         Self {
-            flow: Flow::new(tin),
+            flow: Flow::in_blocks(tin, block),
             landslides: Landslides::default(),
             rivers: SharedStreamPower::default(),
             water: vec![0.0; tin.len()],
+            beyond: Vec::new(),
         }
     }
 
@@ -276,15 +166,18 @@ impl Erosion {
         forcing.check(tin.len());
         let fixed = params.edges == Edges::Fixed;
         let outlets = if fixed { Outlets::Border } else { Outlets::Lowest };
-        self.flow.route(tin, z, outlets, forcing.rain);
+        self.flow
+            .route_with(tin, z, outlets, forcing.rain, sediment.is_some());
         let mut sums = StepSums {
             lakes: self.flow.lakes().count(),
             ..StepSums::default()
         };
         if sediment.is_some() && self.flow.lakes().any() {
-            for (node, (water, z)) in tin.nodes().zip(self.water.iter_mut().zip(&*z)) {
-                *water = self.flow.lakes().level(node, *z);
-            }
+            let (lakes, z) = (self.flow.lakes(), &*z);
+            let levels = self.water.par_iter_mut().with_min_len(self.flow.blocks().size());
+            levels
+                .enumerate()
+                .for_each(|(i, water)| *water = lakes.level(NodeId::new(i), z[i]));
         }
         self.move_outlets(tin, z, forcing, params, dt_yr, &mut sums);
         if let Some((sediment, deposition)) = &mut sediment {
@@ -292,6 +185,7 @@ impl Erosion {
             sums.exported_m3 = sums.fluvial_m3;
             let rivers = Rivers {
                 network: network(&self.flow, tin),
+                blocks: self.flow.blocks(),
                 lakes: self.flow.lakes(),
                 areas: tin.areas(),
                 forcing,
@@ -306,28 +200,57 @@ impl Erosion {
             self.incise(tin, z, forcing, params, dt_yr, &mut sums);
         }
         if params.landslides {
-            let areas = tin.areas();
-            let talus = |i: usize| forcing.talus.map_or(params.talus, |talus| talus[i]);
-            let reach = |i: usize| {
-                let held = fixed && tin.border()[i];
-                if held {
-                    0.0
-                } else {
-                    params.landslide_rate * dt_yr * forcing.exposure(i)
-                }
-            };
-            let slid = |i: usize, below: usize, depth: f64| {
-                sums.landslide_m3 += areas[i] * depth;
-                if let Some((sediment, _)) = &mut sediment {
-                    sediment.cut(i, depth);
-                    sediment.debris[below] += areas[i] * depth;
-                }
-            };
-            self.landslides.step(tin, z, talus, reach, slid);
+            let kept = sediment.map(|(sediment, _)| sediment);
+            sums.landslide_m3 = self.slide(tin, z, kept, forcing, params, dt_yr);
         }
         self.settle_water(z);
-        sums.not_finite = z.iter().filter(|height| !height.is_finite()).count();
+        let heights = z.par_iter().with_min_len(self.flow.blocks().size());
+        sums.not_finite = heights.filter(|height| !height.is_finite()).count();
         sums
+    }
+
+    /// Lets slopes slide; returns the volume, m³.
+    fn slide(
+        &mut self,
+        tin: &Tin,
+        z: &mut [f64],
+        mut sediment: Option<&mut Sediment>,
+        forcing: &Forcing<'_>,
+        params: &ErosionParams,
+        dt_yr: f64,
+    ) -> f64 {
+        let fixed = params.edges == Edges::Fixed;
+        let reach = |i: usize| {
+            if fixed && tin.border()[i] {
+                0.0
+            } else {
+                params.landslide_rate * dt_yr * forcing.exposure(i)
+            }
+        };
+        let slopes = Slopes {
+            tin,
+            talus: |i: usize| forcing.talus.map_or(params.talus, |talus| talus[i]),
+            reach,
+        };
+        let areas = tin.areas();
+        self.landslides.find(&slopes, z);
+        let mut volume = 0.0;
+        let size = self.flow.blocks().size();
+        if tin.len() > size {
+            let mut parts = Falls::in_blocks(sediment.as_deref_mut(), tin.len(), size);
+            let slid = |falls: &mut Falls<'_>, i: usize, below: usize, depth: f64| {
+                falls.add(areas[i], i, below, depth);
+            };
+            self.landslides
+                .slide_in_blocks(&slopes, z, size, &mut parts, slid);
+            volume = parts.iter().map(|part| part.volume).sum();
+        }
+        let mut rest = Falls::whole(sediment);
+        rest.volume = volume;
+        self.landslides.slide_across(&slopes, z, |i, below, depth| {
+            rest.add(areas[i], i, below, depth);
+        });
+        rest.volume
     }
 
     /// Outlets have no receiver: the edges say how they move.
@@ -381,30 +304,59 @@ impl Erosion {
     ) {
         let areas = tin.areas();
         let network = network(&self.flow, tin);
+        let blocks = self.flow.blocks();
         let rise = |i: usize| dt_yr * forcing.uplift[i];
-        let risen = tin.nodes().filter(|&node| self.flow.receiver(node).is_some());
-        sums.uplifted_m3 += risen
-            .map(|node| areas[node.index()] * rise(node.index()))
-            .sum::<f64>();
-        let water = self.flow.lakes().any().then_some(&mut self.water[..]);
-        let eroded = |i: usize, depth: f64| sums.fluvial_m3 += areas[i] * depth;
         let duration = |i: usize| dt_yr * factor(forcing, i);
-        StreamPower::from(params).step(&network, z, water, rise, duration, eroded);
+        let law = StreamPower::from(params);
+        let run = |stretch: Stretch<'_>, surface: Surface<'_>, volume: &mut f64| {
+            let eroded = |i: usize, depth: f64| *volume += areas[i] * depth;
+            law.sweep(&network, stretch, surface, rise, duration, eroded);
+        };
+        sums.uplifted_m3 += sum_in_blocks(tin.len(), blocks.size(), |i| {
+            let risen = self.flow.receivers()[i].index() != i;
+            if risen { areas[i] * rise(i) } else { 0.0 }
+        });
+        let mut water = self.flow.lakes().any().then_some(&mut self.water[..]);
+        let surface = Surface {
+            z,
+            water: water.as_deref_mut(),
+        };
+        run(blocks.trunk(network.order), surface, &mut sums.fluvial_m3);
+        let levels = water.as_deref().unwrap_or(z);
+        let headwaters = blocks.headwaters(network.order, &mut self.beyond, |node| levels[node]);
+        let volumes = (headwaters, Surface { z, water }.in_blocks(blocks.size()))
+            .into_par_iter()
+            .map(|(stretch, surface)| {
+                let mut volume = 0.0;
+                run(stretch, surface, &mut volume);
+                volume
+            });
+        sums.fluvial_m3 += volumes.collect::<Vec<f64>>().iter().sum::<f64>();
     }
 
     /// Water stands, along the flow, at the highest ground further down.
     fn settle_water(&mut self, z: &[f64]) {
-        if self.flow.lakes().any() {
-            for node in self.flow.order() {
+        if !self.flow.lakes().any() {
+            return;
+        }
+        let (blocks, order, receivers) = (self.flow.blocks(), self.flow.order(), self.flow.receivers());
+        let settle = |mut stretch: Stretch<'_>, water: &mut [f64]| {
+            for node in stretch.order {
                 let i = node.index();
-                let receiver = self.flow.receivers()[i].index();
-                self.water[i] = if receiver == i {
+                let receiver = receivers[i].index();
+                water[i - stretch.first] = if receiver == i {
                     z[i]
                 } else {
-                    z[i].max(self.water[receiver])
+                    z[i].max(stretch.below(receiver, water))
                 };
             }
-        }
+        };
+        settle(blocks.trunk(order), &mut self.water);
+        let headwaters = blocks.headwaters(order, &mut self.beyond, |node| self.water[node]);
+        headwaters
+            .into_par_iter()
+            .zip(self.water.par_chunks_mut(blocks.size()))
+            .for_each(|(stretch, water)| settle(stretch, water));
     }
 
     /// The flow over the heights with which the last step began.

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::blocks::{BLOCK, Blocks};
 use super::lakes::Lakes;
 use super::tin::{Link, NodeId, Tin};
 
@@ -19,7 +20,7 @@ const CHUNK: usize = 16_384;
 ///   where no neighbour is lower or where a lake spills over the border.
 ///
 /// Cost is linear in the nodes, whatever the number of lakes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Flow {
     receivers: Vec<NodeId>,
     order: Vec<NodeId>,
@@ -27,6 +28,7 @@ pub struct Flow {
     /// Donors that have not yet passed their water on, while the order is made.
     pending: Vec<u32>,
     lakes: Lakes,
+    blocks: Blocks,
 }
 
 /// Which border nodes are outlets.
@@ -41,6 +43,11 @@ pub enum Outlets {
 impl Flow {
     /// Memory for a TIN; nothing is routed yet.
     pub fn new(tin: &Tin) -> Self {
+        Self::in_blocks(tin, BLOCK)
+    }
+
+    /// Memory for a TIN whose blocks have so many nodes.
+    pub(super) fn in_blocks(tin: &Tin, block: usize) -> Self {
         let n = tin.len();
         Self {
             receivers: vec![NodeId(0); n],
@@ -48,6 +55,7 @@ impl Flow {
             drainage: vec![0.0; n],
             pending: vec![0; n],
             lakes: Lakes::default(),
+            blocks: Blocks::new(block),
         }
     }
 
@@ -56,11 +64,30 @@ impl Flow {
     /// # Panics
     /// If a slice does not hold one value per node. Heights that are not finite are no reason to panic.
     pub fn route(&mut self, tin: &Tin, z: &[f64], outlets: Outlets, rain: Option<&[f64]>) {
+        self.route_with(tin, z, outlets, rain, false);
+    }
+
+    /// Like [`Self::route`]; if `lakes_in_trunk`, what lies under water is put into the trunk of the network.
+    pub(super) fn route_with(
+        &mut self,
+        tin: &Tin,
+        z: &[f64],
+        outlets: Outlets,
+        rain: Option<&[f64]>,
+        lakes_in_trunk: bool,
+    ) {
         assert_eq!(z.len(), tin.len(), "one height per node");
         self.descend(tin, z, outlets);
         self.lakes.resolve(tin, z, &mut self.receivers);
         self.rain_on(tin, rain);
-        self.accumulate();
+        let held = |node: NodeId| lakes_in_trunk && self.lakes.lake(node, z[node.index()]).is_some();
+        self.blocks.sort(
+            &self.receivers,
+            &mut self.order,
+            &mut self.drainage,
+            &mut self.pending,
+            held,
+        );
     }
 
     /// Receivers by steepest descent.
@@ -94,34 +121,6 @@ impl Flow {
         }
     }
 
-    /// Order and drainage in one sweep: from each source downstream, as long as all donors of the next node have
-    /// passed on their water. Short walks between memory neighbours, and no list of donors.
-    fn accumulate(&mut self) {
-        self.pending.fill(0);
-        for (i, receiver) in self.receivers.iter().enumerate() {
-            self.pending[receiver.index()] += u32::from(receiver.index() != i);
-        }
-        // The sweep meets donors before receivers; the order runs the other way.
-        let mut slots = self.order.iter_mut().rev();
-        for source in 0..self.receivers.len() {
-            let mut i = source;
-            while self.pending[i] == 0 {
-                // Never zero again.
-                self.pending[i] = u32::MAX;
-                if let Some(slot) = slots.next() {
-                    *slot = NodeId::new(i);
-                }
-                let receiver = self.receivers[i].index();
-                if receiver == i {
-                    break;
-                }
-                self.drainage[receiver] += self.drainage[i];
-                self.pending[receiver] -= 1;
-                i = receiver;
-            }
-        }
-    }
-
     /// Where each node's water goes; outlets name themselves.
     pub fn receivers(&self) -> &[NodeId] {
         &self.receivers
@@ -146,6 +145,11 @@ impl Flow {
     /// The lakes of the surface that was routed.
     pub fn lakes(&self) -> &Lakes {
         &self.lakes
+    }
+
+    /// How sweeps over the network are cut.
+    pub(super) fn blocks(&self) -> &Blocks {
+        &self.blocks
     }
 
     /// Checks that the order holds each node once and after its receiver, and that all water leaves at the border.

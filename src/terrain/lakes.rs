@@ -7,6 +7,8 @@
 //! the border would leave there (Barnes et al. 2014), to the bit. Flow is *carved*: the path from the pass down to
 //! the pit is reversed, so rivers cross a lake along its former bed.
 
+use rayon::prelude::*;
+
 use super::basin_graph::{BasinGraph, Pass, spread_downstream};
 use super::tin::{NodeId, Tin};
 
@@ -18,6 +20,21 @@ const UNLABELLED: u32 = u32::MAX;
 
 /// End of a list, or nothing yet.
 const NONE: u32 = u32::MAX;
+
+/// Nodes per task of the parallel passes. Labels and passes are the same however the land is cut.
+const CHUNK: usize = 16_384;
+
+/// Flag of a label that stands for a way out of a chunk.
+const LEAVING: u32 = 1 << 31;
+
+/// What is found in one chunk of the land.
+#[derive(Clone, Debug, Default)]
+struct Chunk {
+    pits: Vec<NodeId>,
+    /// Where paths leave the chunk: the nodes they go to.
+    exits: Vec<NodeId>,
+    passes: Vec<Pass>,
+}
 
 /// The closed basins of a surface and the levels to which they fill.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +51,9 @@ pub struct Lakes {
     graph: BasinGraph,
     ends: PassEnds,
     queue: Vec<u32>,
+    chunks: Vec<Chunk>,
+    /// Labels at the exits of all chunks.
+    beyond: Vec<u32>,
 }
 
 impl Lakes {
@@ -44,31 +64,82 @@ impl Lakes {
         self.lake.clear();
         self.wet.clear();
         self.pits.clear();
-        let ends = |&(i, receiver): &(usize, &NodeId)| receiver.index() == i && !tin.border()[i];
-        let pits = receivers.iter().enumerate().filter(ends).map(|(_, &pit)| pit);
-        self.pits.extend(pits);
+        self.find_pits(tin, receivers);
         if self.pits.is_empty() {
             return;
         }
         self.label(receivers);
-        let basin = &self.basin;
-        self.graph
-            .span(self.pits.len() + 1, |visit| each_pass(tin, z, basin, visit));
+        self.find_passes(tin, z);
+        let chunks = &self.chunks;
+        self.graph.span(self.pits.len() + 1, |visit| {
+            chunks
+                .iter()
+                .flat_map(|chunk| &chunk.passes)
+                .for_each(|&pass| visit(pass));
+        });
         self.carve(z, receivers);
+    }
+
+    fn find_pits(&mut self, tin: &Tin, receivers: &[NodeId]) {
+        self.chunks
+            .resize_with(receivers.len().div_ceil(CHUNK), Chunk::default);
+        self.chunks.par_iter_mut().enumerate().for_each(|(k, chunk)| {
+            let first = k * CHUNK;
+            let nodes = (first..).zip(&receivers[first..]).take(CHUNK);
+            let ends = |&(i, receiver): &(usize, &NodeId)| receiver.index() == i && !tin.border()[i];
+            chunk.pits.clear();
+            chunk.pits.extend(nodes.filter(ends).map(|(_, &pit)| pit));
+        });
+        for chunk in &self.chunks {
+            self.pits.extend(&chunk.pits);
+        }
     }
 
     /// Basins are numbered by pit, from 1; nodes whose path ends at none are outside.
     fn label(&mut self, receivers: &[NodeId]) {
         self.basin.resize(receivers.len(), UNLABELLED);
-        for (i, receiver) in receivers.iter().enumerate() {
-            if receiver.index() == i {
-                self.basin[i] = OUTSIDE;
-            }
-        }
-        for (k, pit) in (1..).zip(&self.pits) {
-            self.basin[pit.index()] = k;
-        }
-        spread_downstream(&mut self.basin, UNLABELLED, |i| receivers[i].index());
+        let firsts = begins(&self.chunks, 1, |chunk| chunk.pits.len());
+        (self.basin.par_chunks_mut(CHUNK), &mut self.chunks, firsts)
+            .into_par_iter()
+            .enumerate()
+            .for_each(|(k, (basin, chunk, number))| chunk.label(receivers, k * CHUNK, number as u32, basin));
+        // A path that leaves its chunk has the label of where it goes, which may be to leave that chunk too.
+        let begins = begins(&self.chunks, 0, |chunk| chunk.exits.len());
+        let basin = &self.basin;
+        let target = |exit: NodeId| {
+            let label = basin[exit.index()];
+            (label & LEAVING != 0).then(|| begins[exit.index() / CHUNK] + (label & !LEAVING) as usize)
+        };
+        let exits: Vec<NodeId> = self
+            .chunks
+            .iter()
+            .flat_map(|chunk| &chunk.exits)
+            .copied()
+            .collect();
+        self.beyond.clear();
+        self.beyond.extend(exits.iter().map(|exit| match target(*exit) {
+            Some(_) => UNLABELLED,
+            None => basin[exit.index()],
+        }));
+        spread_downstream(&mut self.beyond, UNLABELLED, |k| target(exits[k]).unwrap_or(k));
+        let beyond = &self.beyond;
+        (self.basin.par_chunks_mut(CHUNK), begins)
+            .into_par_iter()
+            .for_each(|(basin, begin)| {
+                for label in basin.iter_mut().filter(|label| **label & LEAVING != 0) {
+                    *label = beyond[begin + (*label & !LEAVING) as usize];
+                }
+            });
+    }
+
+    /// All links out of closed basins, each once, and the border nodes inside them.
+    fn find_passes(&mut self, tin: &Tin, z: &[f64]) {
+        let basin = &self.basin;
+        self.chunks.par_iter_mut().enumerate().for_each(|(k, chunk)| {
+            let nodes = k * CHUNK..((k + 1) * CHUNK).min(tin.len());
+            chunk.passes.clear();
+            each_pass(tin, z, basin, nodes, |pass| chunk.passes.push(pass));
+        });
     }
 
     /// Walks the tree from the outside inwards: levels, lakes, and reversed paths.
@@ -152,9 +223,62 @@ impl Lakes {
     }
 }
 
-/// All links out of closed basins, each once, and the border nodes inside them.
-fn each_pass(tin: &Tin, z: &[f64], basin: &[u32], visit: &mut dyn FnMut(Pass)) {
-    for node in tin.nodes() {
+/// The numbers with which the items of each chunk begin.
+fn begins(chunks: &[Chunk], from: usize, items: impl Fn(&Chunk) -> usize) -> Vec<usize> {
+    let mut next = from;
+    let mut begins = Vec::with_capacity(chunks.len());
+    for chunk in chunks {
+        begins.push(next);
+        next += items(chunk);
+    }
+    begins
+}
+
+impl Chunk {
+    /// Labels the nodes from `first` on, whose pits are numbered from `number` on.
+    fn label(&mut self, receivers: &[NodeId], first: usize, number: u32, basin: &mut [u32]) {
+        let receivers = &receivers[first..first + basin.len()];
+        for (k, (label, receiver)) in basin.iter_mut().zip(receivers).enumerate() {
+            *label = if receiver.index() == first + k {
+                OUTSIDE
+            } else {
+                UNLABELLED
+            };
+        }
+        for (number, pit) in (number..).zip(&self.pits) {
+            basin[pit.index() - first] = number;
+        }
+        self.exits.clear();
+        for start in 0..basin.len() {
+            let mut end = start;
+            while basin[end] == UNLABELLED {
+                let next = receivers[end].index().wrapping_sub(first);
+                if next < basin.len() {
+                    end = next;
+                } else {
+                    basin[end] = LEAVING | self.exits.len() as u32;
+                    self.exits.push(receivers[end]);
+                }
+            }
+            let label = basin[end];
+            let mut place = start;
+            while basin[place] == UNLABELLED {
+                basin[place] = label;
+                place = receivers[place].index() - first;
+            }
+        }
+    }
+}
+
+/// All links out of closed basins from the given nodes, each once, and the border nodes inside them.
+fn each_pass(
+    tin: &Tin,
+    z: &[f64],
+    basin: &[u32],
+    nodes: std::ops::Range<usize>,
+    mut visit: impl FnMut(Pass),
+) {
+    for node in nodes.map(NodeId::new) {
         let i = node.index();
         let inside = basin[i];
         if inside == OUTSIDE {

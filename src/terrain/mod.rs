@@ -6,27 +6,31 @@
 //! [`StartLand`] is the land before the first step, [`TinRaster`] turns nodes into pixels.
 
 mod basin_graph;
+mod blocks;
 mod dart_board;
 mod erosion;
 mod flow;
 mod hilbert;
 mod lakes;
 mod landslide;
+mod params;
 mod priority_flood;
 mod raster;
 mod resample;
 mod sampling;
 mod sediment;
+mod shared_stream_power;
 mod smooth;
 mod start;
 mod stream_power;
 mod tin;
 mod voronoi;
 
-pub use erosion::{Bound, Edges, Erosion, ErosionParams, Forcing, OutOfBounds, StepSums};
+pub use erosion::{Erosion, Forcing, StepSums};
 pub use flow::{Flow, Outlets};
 pub use lakes::Lakes;
 pub use landslide::Landslides;
+pub use params::{Bound, Edges, ErosionParams, OutOfBounds};
 pub use priority_flood::priority_flood;
 pub use raster::TinRaster;
 pub use resample::Resampling;

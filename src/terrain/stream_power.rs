@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::blocks::Stretch;
 use super::tin::NodeId;
 
 /// Most iterations for one node when n ≠ 1. Ten are rare; the cap is there for input that is not finite.
@@ -34,6 +35,28 @@ pub struct Network<'a> {
     pub drainage: &'a [f64],
 }
 
+/// The land that a stretch of a network lies in, from its first node on.
+#[derive(Debug)]
+pub(super) struct Surface<'a> {
+    /// Heights, m.
+    pub(super) z: &'a mut [f64],
+    /// Heights of the water surface, m; none where there are no lakes.
+    pub(super) water: Option<&'a mut [f64]>,
+}
+
+impl Surface<'_> {
+    /// The same, one block after the other.
+    pub(super) fn in_blocks(self, size: usize) -> Vec<Self> {
+        let mut water = self.water.map(|water| water.chunks_mut(size));
+        let ground = self.z.chunks_mut(size);
+        let part = |z| Surface {
+            z,
+            water: water.as_mut().and_then(Iterator::next),
+        };
+        ground.map(part).collect()
+    }
+}
+
 impl StreamPower {
     /// Raises all nodes but outlets by `rise` (m), and incises them for `duration` years (times the
     /// erodibility of the node).
@@ -60,27 +83,51 @@ impl StreamPower {
         duration: impl Fn(usize) -> f64,
         eroded: impl FnMut(usize, f64),
     ) {
+        let surface = Surface { z, water };
+        let all = Stretch::whole(network.order);
+        self.sweep(network, all, surface, rise, duration, eroded);
+    }
+
+    /// [`Self::step`] of one stretch of the network.
+    pub(super) fn sweep(
+        &self,
+        network: &Network<'_>,
+        stretch: Stretch<'_>,
+        surface: Surface<'_>,
+        rise: impl Fn(usize) -> f64,
+        duration: impl Fn(usize) -> f64,
+        eroded: impl FnMut(usize, f64),
+    ) {
+        match (surface.z, surface.water) {
+            (z, Some(water)) => self.climb::<true>(network, stretch, (z, water), rise, duration, eroded),
+            (z, None) => self.climb::<false>(network, stretch, (z, &mut []), rise, duration, eroded),
+        }
+    }
+
+    fn climb<const WET: bool>(
+        &self,
+        network: &Network<'_>,
+        stretch: Stretch<'_>,
+        land: (&mut [f64], &mut [f64]),
+        rise: impl Fn(usize) -> f64,
+        duration: impl Fn(usize) -> f64,
+        eroded: impl FnMut(usize, f64),
+    ) {
         let Self { m, n, .. } = *self;
-        // Three copies of the sweep, each with its own law compiled in.
+        // Each law compiled in.
         if n != 1.0 {
-            sweep(
-                network,
-                z,
-                water,
-                rise,
-                |i, a, dd, x| self.remaining(duration(i), a, dd, x),
-                eroded,
-            );
+            let general = |i: usize, a: f64, dd: f64, x: f64| self.remaining(duration(i), a, dd, x);
+            sweep::<WET>(network, stretch, land, rise, general, eroded);
         } else if m == 0.5 {
             let root = |i: usize, area: f64, squared: f64, excess: f64| {
                 excess / (1.0 + self.k * duration(i) * (area / squared).sqrt())
             };
-            sweep(network, z, water, rise, root, eroded);
+            sweep::<WET>(network, stretch, land, rise, root, eroded);
         } else {
             let power = |i: usize, area: f64, squared: f64, excess: f64| {
                 excess / (1.0 + self.k * duration(i) * area.powf(m) / squared.sqrt())
             };
-            sweep(network, z, water, rise, power, eroded);
+            sweep::<WET>(network, stretch, land, rise, power, eroded);
         }
     }
 
@@ -97,67 +144,43 @@ impl StreamPower {
 }
 
 /// From the outlets upstream: what is left of each node's excess over its receiver is `settle(node, drainage, squared
-/// distance, excess)`.
-fn sweep(
+/// distance, excess)`. Compiled once for lands with water and once for those without.
+fn sweep<const WET: bool>(
     network: &Network<'_>,
-    z: &mut [f64],
-    water: Option<&mut [f64]>,
+    mut stretch: Stretch<'_>,
+    (z, water): (&mut [f64], &mut [f64]),
     rise: impl Fn(usize) -> f64,
     settle: impl Fn(usize, f64, f64, f64) -> f64,
     mut eroded: impl FnMut(usize, f64),
 ) {
-    let &Network {
-        positions,
-        receivers,
-        order,
-        drainage,
-    } = network;
-    let remaining = |i: usize, receiver: usize, excess: f64| {
-        settle(
-            i,
-            drainage[i],
-            positions[i].distance_squared(positions[receiver]),
-            excess,
-        )
-    };
-    if let Some(water) = water {
-        for node in order {
-            let i = node.index();
-            let receiver = receivers[i].index();
-            if receiver == i {
-                water[i] = z[i];
-                continue;
+    let positions = network.positions;
+    // One length, one check of bounds.
+    let (first, nodes) = (stretch.first, z.len());
+    let receivers = &network.receivers[first..first + nodes];
+    let drainage = &network.drainage[first..first + nodes];
+    let water = if WET { &mut water[..nodes] } else { water };
+    for node in stretch.order {
+        let (i, k) = (node.index(), node.index() - first);
+        let receiver = receivers[k].index();
+        if receiver == i {
+            if WET {
+                water[k] = z[k];
             }
-            let base = water[receiver];
-            let risen = z[i] + rise(i);
-            let excess = risen - base;
-            if excess > 0.0 {
-                let left = remaining(i, receiver, excess);
-                z[i] = base + left;
-                water[i] = z[i];
-                eroded(i, excess - left);
-            } else {
-                z[i] = risen;
-                water[i] = base;
-            }
+            continue;
         }
-    } else {
-        for node in order {
-            let i = node.index();
-            let receiver = receivers[i].index();
-            if receiver == i {
-                continue;
-            }
-            let base = z[receiver];
-            let risen = z[i] + rise(i);
-            let excess = risen - base;
-            if excess > 0.0 {
-                let left = remaining(i, receiver, excess);
-                z[i] = base + left;
-                eroded(i, excess - left);
-            } else {
-                z[i] = risen;
-            }
+        let base = stretch.below(receiver, if WET { water } else { z });
+        let risen = z[k] + rise(i);
+        let excess = risen - base;
+        let (mut ground, mut level) = (risen, base);
+        if excess > 0.0 {
+            let squared = positions[i].distance_squared(positions[receiver]);
+            let left = settle(i, drainage[k], squared, excess);
+            (ground, level) = (base + left, base + left);
+            eroded(i, excess - left);
+        }
+        z[k] = ground;
+        if WET {
+            water[k] = level;
         }
     }
 }
