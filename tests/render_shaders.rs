@@ -2,73 +2,22 @@
 
 #![cfg(feature = "app")]
 
-use std::mem::offset_of;
+mod shader_common;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
-use naga::{Module, TypeInner};
+use naga::Module;
+use orogen::gpu;
 use orogen::render::RenderQuality;
 use orogen::render::layout::{Air, Frames, Globe, Ground, Reach, SHADERS, View, source};
-
-/// Names of the fields of a Rust struct and their places in it, bytes.
-struct Layout {
-    name: &'static str,
-    shader: &'static str,
-    size: usize,
-    fields: Vec<(&'static str, usize)>,
-}
-
-macro_rules! layout {
-    ($type:ident in $shader:literal: $($field:ident),+) => {
-        Layout {
-            name: stringify!($type),
-            shader: $shader,
-            size: size_of::<$type>(),
-            fields: vec![$((stringify!($field), offset_of!($type, $field))),+],
-        }
-    };
-}
+use shader_common::{Layout, check, differences, layout};
 
 fn parse(name: &str) -> Module {
-    let text = source(name, RenderQuality::SOFTWARE.light, (0.3, 0.8));
-    match naga::front::wgsl::parse_str(&text) {
-        Ok(module) => module,
-        Err(error) => panic!("{name}: {}", error.emit_to_string(&text)),
-    }
-}
-
-/// What differs between a Rust struct and the shader's struct of that name.
-fn differences(layout: &Layout, module: &Module) -> Vec<String> {
-    let found = module
-        .types
-        .iter()
-        .find(|(_, ty)| ty.name.as_deref() == Some(layout.name));
-    let Some((_, ty)) = found else {
-        return vec![format!("{} is not in the shader", layout.name)];
-    };
-    let TypeInner::Struct { members, span } = &ty.inner else {
-        return vec![format!("{} is no struct in the shader", layout.name)];
-    };
-    let mut differences = Vec::new();
-    // A uniform's size is rounded up to its alignment.
-    if layout.size.next_multiple_of(16) != (*span as usize).next_multiple_of(16) {
-        differences.push(format!("{}: {} bytes against {span}", layout.name, layout.size));
-    }
-    let theirs: Vec<(&str, usize)> = members
-        .iter()
-        .map(|member| (member.name.as_deref().unwrap_or(""), member.offset as usize))
-        .collect();
-    if layout.fields != theirs {
-        differences.push(format!("{}: {:?} against {theirs:?}", layout.name, layout.fields));
-    }
-    differences
+    shader_common::parse(name, &source(name, RenderQuality::SOFTWARE.light, (0.3, 0.8)))
 }
 
 #[test]
 fn every_shader_is_valid() {
     for (name, _) in SHADERS {
-        let module = parse(name);
-        let checked = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module);
-        assert!(checked.is_ok(), "{name}: {:?}", checked.err());
+        check(name, &parse(name));
     }
 }
 
@@ -110,10 +59,8 @@ fn every_shader_file_is_in_the_list() {
     for entry in std::fs::read_dir(folder).expect("shaders") {
         let path = entry.expect("entry").path();
         let name = path.file_stem().expect("name").to_string_lossy().into_owned();
-        let shared = matches!(&*name, "ground" | "encode" | "pile");
-        assert!(
-            shared || SHADERS.iter().any(|(known, _)| *known == name),
-            "{name}.wgsl"
-        );
+        let shared = matches!(&*name, "ground" | "encode" | "pile" | "power");
+        let mut listed = SHADERS.iter().chain(&gpu::layout::SHADERS);
+        assert!(shared || listed.any(|(known, _)| *known == name), "{name}.wgsl");
     }
 }

@@ -2,9 +2,20 @@
 //!
 //! A [`Gpu`] is one device from the day it was found to the day it is lost. Nothing repairs a lost device: everything
 //! on it is made anew, and each new one has a higher [`Gpu::generation`].
+//!
+//! Stages of the mountain have twins here: [`GpuTransport`] implements the same trait as the stage on the processor and
+//! falls back to it.
+
+pub mod layout;
+mod program;
+mod stage;
+mod transport;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+
+pub use stage::OnCard;
+pub use transport::GpuTransport;
 
 /// Devices made so far in this process.
 static GENERATIONS: AtomicU64 = AtomicU64::new(0);
@@ -160,6 +171,31 @@ impl Gpu {
         self.lost.load(Ordering::Acquire)
     }
 
+    /// Nothing, while the device is there and has refused nothing since somebody asked.
+    ///
+    /// # Errors
+    /// When it is lost, or the first thing that it refused.
+    pub(crate) fn sound(&self) -> Result<(), GpuError> {
+        if self.lost() {
+            return Err(GpuError::Refused("the graphics device is lost".to_owned()));
+        }
+        self.take_fault()
+            .map_or(Ok(()), |fault| Err(GpuError::Refused(fault)))
+    }
+
+    /// Nothing, where the device computes.
+    ///
+    /// # Errors
+    /// When its adapter only draws, as those of old interfaces do.
+    pub fn can_compute(&self) -> Result<(), GpuError> {
+        let flags = self.adapter.get_downlevel_capabilities().flags;
+        if computes(flags, &self.device.limits()) {
+            return Ok(());
+        }
+        let name = &self.info.name;
+        Err(GpuError::Refused(format!("{name} draws and does not compute")))
+    }
+
     /// Which device of this process it is, from 1.
     pub fn generation(&self) -> u64 {
         self.generation
@@ -171,6 +207,13 @@ impl Gpu {
     }
 }
 
+/// True for what can run the compute shaders.
+fn computes(flags: wgpu::DownlevelFlags, limits: &wgpu::Limits) -> bool {
+    flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+        && limits.max_storage_buffers_per_shader_stage > program::INPUTS as u32
+        && limits.max_compute_invocations_per_workgroup >= layout::SIDE * layout::SIDE
+}
+
 /// Cards first, then what sits beside the processor, software last.
 fn rank(kind: wgpu::DeviceType) -> u8 {
     match kind {
@@ -179,5 +222,19 @@ fn rank(kind: wgpu::DeviceType) -> u8 {
         wgpu::DeviceType::VirtualGpu => 2,
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adapters_that_only_draw_are_recognised() {
+        let all = wgpu::DownlevelFlags::all();
+        assert!(computes(all, &wgpu::Limits::downlevel_defaults()));
+        assert!(!computes(all, &wgpu::Limits::downlevel_webgl2_defaults()));
+        let draws = all - wgpu::DownlevelFlags::COMPUTE_SHADERS;
+        assert!(!computes(draws, &wgpu::Limits::downlevel_defaults()));
     }
 }

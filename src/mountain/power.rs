@@ -7,11 +7,13 @@ use std::f32::consts::{LN_2, LOG2_E};
 /// (`|log2 d| ≤ 32`): a few roundings of a number that carries `log2` up to 32.
 pub const RELATIVE_ERROR: f32 = 3e-6;
 
+/// Bits of √½.
+pub(crate) const SQRT_HALF_BITS: u32 = 0x3f35_04f3;
+
 /// Binary logarithm of a positive, normal number: `x = m·2^k` with `m` in `[√½, √2)`, and
 /// `log2 m = 2/ln 2 · artanh((m − 1)/(m + 1))`, whose series needs five terms for 1e-9.
 #[inline]
 pub fn log2(x: f32) -> f32 {
-    const SQRT_HALF_BITS: u32 = 0x3f35_04f3;
     let bits = x.to_bits();
     // Subtracting the bits of √½ leaves the exponent relative to it in the upper bits.
     let shifted = bits.wrapping_sub(SQRT_HALF_BITS) as i32;

@@ -13,7 +13,7 @@
 //! where `e < 1` makes the gradient singular (the rims), and makes the sum of `q` telescope to the area of the
 //! domain's preimage. Corners where the crust has turned over give `q ≤ 0`; they are counted, never NaN.
 
-mod rows;
+pub(crate) mod rows;
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -97,17 +97,44 @@ impl TransportField {
         DVec2::new(f64::from(self.east[at]), f64::from(self.north[at]))
     }
 
-    fn fit(&mut self, grid: Grid) {
+    /// Makes it a field for `grid`; one for the same grid keeps its memory and values. For stages.
+    pub fn fit(&mut self, grid: Grid) {
         if self.grid != grid {
             *self = Self::new(grid);
         }
     }
+
+    /// Brings the report to what the field holds. For stages.
+    pub fn tally(&mut self) {
+        let tasks = self.q.data.par_chunks(self.grid.cols * ROWS_PER_TASK);
+        let tasks: Vec<rows::QuadSums> = tasks.map(rows::sums).collect();
+        self.report_of(&rows::QuadSums::in_order(&tasks));
+    }
+
+    fn report_of(&mut self, sums: &rows::QuadSums) {
+        let grid = self.grid;
+        self.report = TransportReport {
+            cells: grid.len(),
+            cell_km: grid.cell / 1e3,
+            q_min: f64::from(sums.min),
+            q_max: f64::from(sums.max),
+            volume: sums.sum * grid.cell * grid.cell / 1e6,
+            preimage_area: border_area(self) / 1e6,
+            folded_cells: sums.folded,
+        };
+    }
 }
 
-/// The stage; a twin on another device implements it too.
-pub trait TransportStage {
+/// The stage; a twin on another device implements it too, and answers as [`CpuTransport`] does to [`Q_TOLERANCE`].
+pub trait TransportStage: std::fmt::Debug {
     /// Fills `out` for `problem`.
     fn run(&mut self, problem: &TransportProblem, out: &mut TransportField);
+}
+
+impl<S: TransportStage + ?Sized> TransportStage for Box<S> {
+    fn run(&mut self, problem: &TransportProblem, out: &mut TransportField) {
+        (**self).run(problem, out);
+    }
 }
 
 /// Rows in parallel on the CPU, in `f32` relative to each body: displacements are exact to about 2 mm, `q` to
@@ -152,29 +179,14 @@ impl TransportStage for CpuTransport {
                 for (k, q) in q.chunks_exact_mut(grid.cols).enumerate() {
                     let at = (task * ROWS_PER_TASK + k) * corners;
                     let rows = at..at + 2 * corners;
-                    sums.add(&rows::quads(
-                        &east[rows.clone()],
-                        &north[rows],
-                        grid.cell as f32,
-                        q,
-                    ));
+                    rows::quads(&east[rows.clone()], &north[rows], grid.cell as f32, q);
+                    // While the row is in the cache.
+                    sums.add(&rows::sums(q));
                 }
                 sums
             })
             .collect();
-        let mut sums = rows::QuadSums::default();
-        for task in &tasks {
-            sums.add(task);
-        }
-        out.report = TransportReport {
-            cells: grid.len(),
-            cell_km: grid.cell / 1e3,
-            q_min: f64::from(sums.min),
-            q_max: f64::from(sums.max),
-            volume: sums.sum * grid.cell * grid.cell / 1e6,
-            preimage_area: border_area(out) / 1e6,
-            folded_cells: sums.folded,
-        };
+        out.report_of(&rows::QuadSums::in_order(&tasks));
     }
 }
 

@@ -124,11 +124,7 @@ fn done(gpu: &Gpu) -> Result<(), GpuError> {
     gpu.device
         .poll(wgpu::PollType::wait_indefinitely())
         .map_err(|error| GpuError::Refused(error.to_string()))?;
-    if gpu.lost() {
-        return Err(GpuError::Refused("the graphics device is lost".to_owned()));
-    }
-    gpu.take_fault()
-        .map_or(Ok(()), |fault| Err(GpuError::Refused(fault)))
+    gpu.sound()
 }
 
 /// Brings the texels of `target` back, four bytes each.

@@ -4,6 +4,7 @@ use glam::DVec2;
 use multiversion::multiversion;
 
 use super::TransportProblem;
+use crate::gesture::rigid::RigidMotion;
 use crate::mountain::power::{exp2, log2};
 
 /// Columns worked on at once; their accumulators stay in the first-level cache.
@@ -11,20 +12,45 @@ const BLOCK: usize = 256;
 
 /// Distances are measured in this unit (metres) before the power is taken, so that logarithms of the distances that
 /// matter are small and keep their digits.
-const UNIT: f64 = 16_384.0;
+pub(crate) const UNIT: f64 = 16_384.0;
 
 /// Inside a body the distance is taken as this (metres): its weight then exceeds all others' a million times, and
 /// Eq. 2 turns into Eq. 1 without a branch.
-const RIM: f32 = 1e-3;
+pub(crate) const RIM: f32 = 1e-3;
 
 /// A body as the rows see it.
 struct Caster {
     core: Vec<DVec2>,
     radius: f32,
-    /// `T⁻¹π − π = spin·(π − pivot) + lift`, with the pivot near the body so that `f32` keeps its digits.
-    spin: [f32; 4],
     pivot: DVec2,
-    lift: [f32; 2],
+    back: Back,
+}
+
+/// `T⁻¹π − π = spin·(π − pivot) + lift`, with a pivot near the body so that `f32` keeps its digits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Back {
+    /// The matrix, row by row.
+    pub(crate) spin: [f32; 4],
+    /// Metres.
+    pub(crate) lift: [f32; 2],
+}
+
+impl Back {
+    pub(crate) fn of(motion: &RigidMotion, pivot: DVec2) -> Self {
+        let lift = motion.apply_inverse(pivot) - pivot;
+        let sin = motion.angle.sin();
+        // 1 − cos in the form that keeps its digits for small turns.
+        let versine = 2.0 * (motion.angle / 2.0).sin().powi(2);
+        Self {
+            spin: [-versine as f32, sin as f32, -sin as f32, -versine as f32],
+            lift: [lift.x as f32, lift.y as f32],
+        }
+    }
+}
+
+/// The rest weight for distances in [`UNIT`]s.
+pub(crate) fn rest_weight(problem: &TransportProblem) -> f32 {
+    (problem.rest_weight * UNIT.powf(problem.exponent)) as f32
 }
 
 /// The nearest feature of a core along a stretch of a row: its Voronoi regions are convex, so a row crosses each of
@@ -55,23 +81,18 @@ impl Kernel {
             .iter()
             .map(|body| {
                 let pivot = body.hull.centre();
-                let lift = body.motion.apply_inverse(pivot) - pivot;
-                let sin = body.motion.angle.sin();
-                // 1 − cos in the form that keeps its digits for small turns.
-                let versine = 2.0 * (body.motion.angle / 2.0).sin().powi(2);
                 Caster {
                     core: body.hull.core().to_vec(),
                     radius: body.hull.radius() as f32,
-                    spin: [-versine as f32, sin as f32, -sin as f32, -versine as f32],
                     pivot,
-                    lift: [lift.x as f32, lift.y as f32],
+                    back: Back::of(&body.motion, pivot),
                 }
             })
             .collect();
         Self {
             casters,
             exponent: problem.exponent as f32,
-            rest_weight: (problem.rest_weight * UNIT.powf(problem.exponent)) as f32,
+            rest_weight: rest_weight(problem),
             cell: problem.grid.cell,
             north_west: problem.grid.north_west,
         }
@@ -194,8 +215,8 @@ impl Caster {
 fn cast(caster: &Caster, feature: Feature, from: DVec2, cell: f32, exponent: f32, sums: &mut Sums<'_>) {
     let here = from - caster.pivot;
     let (x0, y) = (here.x as f32, here.y as f32);
-    let [xx, xy, yx, yy] = caster.spin;
-    let [lift_x, lift_y] = caster.lift;
+    let [xx, xy, yx, yy] = caster.back.spin;
+    let [lift_x, lift_y] = caster.back.lift;
     let radius = caster.radius;
     let power = |d: f32| exp2(-exponent * log2(d * (1.0 / UNIT) as f32));
     let columns = sums
@@ -270,6 +291,15 @@ impl Default for QuadSums {
 }
 
 impl QuadSums {
+    /// The sums of `tasks` together.
+    pub(super) fn in_order(tasks: &[Self]) -> Self {
+        let mut sums = Self::default();
+        for task in tasks {
+            sums.add(task);
+        }
+        sums
+    }
+
     pub(super) fn add(&mut self, other: &Self) {
         self.sum += other.sum;
         self.min = self.min.min(other.min);
@@ -280,8 +310,7 @@ impl QuadSums {
 
 /// `q` of a row of cells from two rows of corners (the northern one first).
 #[multiversion(targets("x86_64+avx2"))]
-pub(super) fn quads(east: &[f32], north: &[f32], cell: f32, q: &mut [f32]) -> QuadSums {
-    const LANES: usize = 8;
+pub(super) fn quads(east: &[f32], north: &[f32], cell: f32, q: &mut [f32]) {
     let n = q.len();
     let (east_above, east_below) = east.split_at(n + 1);
     let (north_above, north_below) = north.split_at(n + 1);
@@ -296,6 +325,12 @@ pub(super) fn quads(east: &[f32], north: &[f32], cell: f32, q: &mut [f32]) -> Qu
         // the change.
         *q = 1.0 + 0.5 * ((rx + fy + rx * fy) + (ry - fx - ry * fx));
     }
+}
+
+/// Sums over some cells.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn sums(q: &[f32]) -> QuadSums {
+    const LANES: usize = 8;
     let mut sum = [0.0_f64; LANES];
     let mut min = [f32::INFINITY; LANES];
     let mut max = [f32::NEG_INFINITY; LANES];
