@@ -7,7 +7,7 @@ use orogen::gesture::event::{HandEvent, HandId, Leg};
 use orogen::gesture::rigid::RigidFit;
 use orogen::mountain::compression::CompressionField;
 use orogen::mountain::fold::lines::troughs;
-use orogen::mountain::fold::{FoldDrive, FoldMesh, FoldRates, FoldShape, Skeleton};
+use orogen::mountain::fold::{CpuFolds, FoldDrive, FoldMesh, FoldRates, FoldShape, PointRates, Skeleton};
 use orogen::mountain::transport::{
     CpuTransport, MovedBody, TransportField, TransportProblem, TransportStage,
 };
@@ -146,9 +146,9 @@ fn folds(criterion: &mut Criterion) {
         let blocks = grid.blocks();
         let centre = |at: usize| blocks.centre(at % blocks.cols, at / blocks.cols);
         let points: Vec<DVec2> = (0..blocks.len()).map(centre).collect();
-        let mut at_points = Vec::new();
+        let mut at_points = PointRates::default();
         criterion.bench_function(&format!("fold-rates/65536-points/{wavelength}-km"), |b| {
-            b.iter(|| shape.rates_at_points(&rates, &points, &mut at_points));
+            b.iter(|| at_points.fill(&mut CpuFolds, &shape, &rates, &points));
         });
     }
 }

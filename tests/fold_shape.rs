@@ -9,7 +9,8 @@ use glam::DVec2;
 use orogen::mountain::fold::lines::{top_lines, trough_node, troughs};
 use orogen::mountain::fold::shape::SHAPE_TOLERANCE;
 use orogen::mountain::fold::{
-    Drive, FoldDrive, FoldEdit, FoldEditKind, FoldMesh, FoldRates, FoldShape, FoldStats, Skeleton,
+    CpuFolds, Drive, FoldDrive, FoldEdit, FoldEditKind, FoldMesh, FoldRates, FoldShape, FoldStats,
+    PointRates, Skeleton,
 };
 use orogen::mountain::{Field, Grid};
 use orogen::units::{Extent, KM};
@@ -126,7 +127,7 @@ fn fast_heights_are_those_of_brute_force() {
             let mut heights = Vec::new();
             shape.at_points(&points, &mut heights);
             for (&p, &height) in points.iter().zip(&heights) {
-                assert!((f64::from(height) - brute.shape(p)).abs() < 1e-6);
+                assert!((height - brute.shape(p)).abs() < 1e-6);
                 let exact = brute.distances(p);
                 match shape.distances(p) {
                     Some((crest, trough)) => {
@@ -198,7 +199,7 @@ fn heights_are_continuous() {
             shape.at_points(&line, &mut heights);
             steepest = heights
                 .windows(2)
-                .map(|h| f64::from((h[1] - h[0]).abs()))
+                .map(|h| (h[1] - h[0]).abs())
                 .fold(steepest, f64::max);
         }
         let bound = PI * step / (0.15 * mesh.wavelength());
@@ -354,14 +355,15 @@ fn rates_follow_drive_share_limit_and_hand() {
     let mut heights = Vec::new();
     shape.at_points(&points, &mut heights);
     let at = |share: f64, raise: bool| {
-        let mut out = Vec::new();
-        shape.rates_at_points(&rates(share, raise), &points, &mut out);
-        out
+        let mut out = PointRates::default();
+        out.fill(&mut CpuFolds, &shape, &rates(share, raise), &points);
+        out.raised
     };
     let (low, high, edited) = (at(0.05, false), at(1.0, false), at(0.05, true));
     let mut raised_somewhere: f32 = 1.0;
     for (k, &height) in heights.iter().enumerate() {
         // 0.05 of the rate is far below the limit of 6e-5 m/yr, all of it far above.
+        let height = height as f32;
         let wanted = height * 0.05 * RATE as f32;
         assert!(low[k] <= wanted * 1.000_001 && low[k] >= 0.998 * wanted);
         assert!(high[k] <= height * 6.000_1e-5 && high[k] >= height * 5.9e-5);
@@ -376,6 +378,38 @@ fn rates_follow_drive_share_limit_and_hand() {
         raised_somewhere = raised_somewhere.max(edited[k] / low[k].max(1e-12));
     }
     assert!(raised_somewhere > 1.9);
+}
+
+/// What is asked for only where something folds is what each point by itself would get.
+#[test]
+fn rates_are_heights_times_the_rates_of_crests() {
+    let mesh = mesh(4.0, 8);
+    let drive = belt();
+    let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
+    let shape = FoldShape::new(&mesh, &skeleton);
+    let rates = FoldRates {
+        drive: &drive,
+        share: 0.4,
+        edits: &[],
+    };
+    let mut out = PointRates::default();
+    // Memory of an earlier time must not shine through.
+    out.fill(&mut CpuFolds, &shape, &rates, &places(9_000));
+    let points = places(6_000);
+    out.fill(&mut CpuFolds, &shape, &rates, &points);
+    assert_eq!((out.crests.len(), out.raised.len()), (points.len(), points.len()));
+    let mut still = 0;
+    for (k, &p) in points.iter().enumerate() {
+        let crest = drive.at(p).amplitude_rate(mesh.wavelength(), 0.4);
+        assert_eq!(out.crests[k], crest);
+        assert_eq!(out.raised[k], (shape.at(p) * crest) as f32);
+        still += usize::from(crest == 0.0);
+    }
+    assert!(
+        still > 1_000 && still < 5_000,
+        "{still} of {} points are still",
+        points.len()
+    );
 }
 
 #[test]
@@ -398,13 +432,13 @@ fn any_number_of_threads_gives_the_same_heights() {
             };
             let mut heights = Vec::new();
             shape.on_grid(Grid::over(LAND, 100_000), &mut heights);
-            let mut points = Vec::new();
-            shape.rates_at_points(&rates, &places(5_000), &mut points);
-            (skeleton, heights, points)
+            let mut points = PointRates::default();
+            points.fill(&mut CpuFolds, &shape, &rates, &places(5_000));
+            (skeleton, heights, points.crests, points.raised)
         })
     });
     assert!(runs[0] == runs[1] && runs[0] == runs[2]);
-    assert!(runs[0].2.iter().any(|&rate| rate > 0.0));
+    assert!(runs[0].3.iter().any(|&rate| rate > 0.0));
 }
 
 proptest! {
@@ -438,9 +472,9 @@ proptest! {
         }
         let shape = FoldShape::new(&mesh, &skeleton);
         let rates = FoldRates { drive: &drive, share: 1.0, edits: &edits };
-        let mut out = Vec::new();
-        shape.rates_at_points(&rates, &places(300), &mut out);
-        prop_assert!(out.iter().all(|rate| (0.0..=3.000_1 * RATE as f32).contains(rate)));
+        let mut out = PointRates::default();
+        out.fill(&mut CpuFolds, &shape, &rates, &places(300));
+        prop_assert!(out.raised.iter().all(|rate| (0.0..=3.000_1 * RATE as f32).contains(rate)));
         prop_assert_eq!(
             Skeleton::select(&mesh, &drive, Some(&skeleton), &[]),
             Skeleton::select(&mesh, &drive, Some(&Skeleton::select(&mesh, &drive, None, &[])), &[])

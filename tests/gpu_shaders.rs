@@ -6,7 +6,7 @@
 mod shader_common;
 
 use naga::{AddressSpace, Module, TypeInner};
-use orogen::gpu::layout::{Body, Edge, Problem, SHADERS, source};
+use orogen::gpu::layout::{Body, Edge, Folds, Lines, Place, Problem, SHADERS, source};
 use shader_common::{check, differences, layout};
 
 fn parse(name: &str) -> Module {
@@ -26,6 +26,9 @@ fn shared_layouts_are_the_same_on_both_sides() {
         layout!(Problem in "transport": cols, rows, bodies, exponent, rest_weight, per_cell),
         layout!(Body in "transport": spin, lift, radius, first, edges, solid),
         layout!(Edge in "transport": normal, beyond, along, length),
+        layout!(Lines in "folds": buckets, first, half_length),
+        layout!(Folds in "folds": crests, troughs, size, count, bucket, reach),
+        layout!(Place in "folds": bucket, offset),
     ];
     for layout in &layouts {
         let found = differences(layout, &parse(layout.shader));
@@ -48,6 +51,7 @@ fn elements_of_arrays_are_as_large_on_both_sides() {
     let sizes = [
         ("transport", "Body", size_of::<Body>()),
         ("transport", "Edge", size_of::<Edge>()),
+        ("folds", "Place", size_of::<Place>()),
     ];
     for (shader, name, size) in sizes {
         assert_eq!(stride(&parse(shader), name), Some(size as u32), "{name}");

@@ -3,9 +3,10 @@
 //! A [`Gpu`] is one device from the day it was found to the day it is lost. Nothing repairs a lost device: everything
 //! on it is made anew, and each new one has a higher [`Gpu::generation`].
 //!
-//! Stages of the mountain have twins here: [`GpuTransport`] implements the same trait as the stage on the processor and
-//! falls back to it.
+//! Stages of the mountain have twins here, [`GpuTransport`] and [`GpuFolds`]: they implement the same traits as the
+//! stages on the processor, and fall back to them.
 
+mod folds;
 pub mod layout;
 mod program;
 mod stage;
@@ -14,6 +15,7 @@ mod transport;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+pub use folds::GpuFolds;
 pub use stage::OnCard;
 pub use transport::GpuTransport;
 

@@ -22,6 +22,7 @@ pub mod params;
 pub mod plate;
 pub mod power;
 pub mod residue;
+pub mod stages;
 pub mod strata;
 pub mod tectonics;
 pub mod transport;
@@ -32,6 +33,7 @@ pub use grid::{Field, Grid};
 pub use hull::Hull;
 pub use params::{MountainParams, UpliftRule};
 pub use plate::{Applied, Dome, Plate, PlateId, PlateSet, PlateState};
+pub use stages::Stages;
 pub use tectonics::{TectonicField, Tectonics};
 
 /// Smooth step of order two: 0 for `t ≤ 0`, 1 for `t ≥ 1`, with vanishing first and second derivatives at both

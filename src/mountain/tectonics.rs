@@ -108,6 +108,11 @@ impl<S: TransportStage> Tectonics<S> {
         }
     }
 
+    /// Uses another implementation from now on, and gives the old one back.
+    pub fn replace_stage(&mut self, stage: S) -> S {
+        std::mem::replace(&mut self.stage, stage)
+    }
+
     /// The field of the plates at `now_yr` over `extent`.
     pub fn compute(
         &mut self,

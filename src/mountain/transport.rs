@@ -15,6 +15,8 @@
 
 pub(crate) mod rows;
 
+use std::fmt::Debug;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -126,7 +128,7 @@ impl TransportField {
 }
 
 /// The stage; a twin on another device implements it too, and answers as [`CpuTransport`] does to [`Q_TOLERANCE`].
-pub trait TransportStage: std::fmt::Debug {
+pub trait TransportStage: Debug + Send + Sync {
     /// Fills `out` for `problem`.
     fn run(&mut self, problem: &TransportProblem, out: &mut TransportField);
 }

@@ -2,19 +2,15 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
-use rayon::prelude::*;
-
 use super::World;
-use crate::mountain::fold::{FoldDrive, FoldEdit, FoldMesh, FoldRates, FoldShape, Skeleton, wavelength};
+use crate::mountain::fold::{
+    FoldDrive, FoldEdit, FoldMesh, FoldRates, FoldShape, FoldStage, PointRates, Skeleton, wavelength,
+};
 use crate::mountain::strata::NodeFolds;
 use crate::rock::Stratigraphy;
 
 /// Folds shorter than this many distances between nodes cannot be told apart on the land.
 const SHORTEST_SPACINGS: f64 = 4.0;
-
-/// Nodes per task. Fixed, so that no result depends on the number of threads.
-const CHUNK: usize = 4096;
 
 /// The crests of one pair of layers, as the land last felt them.
 #[derive(Clone, Debug)]
@@ -73,14 +69,30 @@ pub fn folding_layers(pile: &Stratigraphy, spacing: f64, most: usize) -> Vec<Fol
 }
 
 /// Meshes and shapes of a land's folds, kept from one time to the next.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Folding {
+    stage: Box<dyn FoldStage>,
     meshes: Vec<Arc<FoldMesh>>,
     shapes: Vec<(Skeleton, FoldShape)>,
-    scratch: Vec<f32>,
+    rates: PointRates,
 }
 
 impl Folding {
+    /// Folds whose heights `stage` computes.
+    pub(super) fn new(stage: Box<dyn FoldStage>) -> Self {
+        Self {
+            stage,
+            meshes: Vec::new(),
+            shapes: Vec::new(),
+            rates: PointRates::default(),
+        }
+    }
+
+    /// Uses another stage from now on, and gives the old one back.
+    pub(super) fn replace_stage(&mut self, stage: Box<dyn FoldStage>) -> Box<dyn FoldStage> {
+        std::mem::replace(&mut self.stage, stage)
+    }
+
     /// How fast folds rise at the nodes of `world` under `drive`, and the crests they rise to. Where nothing is
     /// compressed any more, crests stay as they were.
     pub(super) fn rates(
@@ -117,15 +129,16 @@ impl Folding {
                 share: layer.share,
                 edits: &world.fold_edits,
             };
-            let positions = world.tin.positions();
-            self.shapes[shape]
-                .1
-                .rates_at_points(&fold_rates, positions, &mut self.scratch);
-            let crests = |p: &DVec2| drive.at(*p).amplitude_rate(layer.wavelength, layer.share);
+            self.rates.fill(
+                &mut *self.stage,
+                &self.shapes[shape].1,
+                &fold_rates,
+                world.tin.positions(),
+            );
             rates.push(NodeFolds {
                 interface: layer.interface,
-                raised: self.scratch.iter().map(|&rate| f64::from(rate)).collect(),
-                crests: positions.par_iter().with_min_len(CHUNK).map(crests).collect(),
+                raised: self.rates.raised.iter().map(|&rate| f64::from(rate)).collect(),
+                crests: self.rates.crests.clone(),
             });
             skeletons.push(LayerSkeleton {
                 interface: layer.interface,

@@ -10,7 +10,7 @@ use super::wear::Wear;
 use super::{SimParams, TICK_US, World};
 use crate::gesture::contact::{ContactEvent, InputFrame, Phase};
 use crate::isostasy::{Crust, Isostasy};
-use crate::mountain::{TectonicField, Tectonics};
+use crate::mountain::{Stages, TectonicField, Tectonics};
 use crate::terrain::{Erosion, Sediment};
 
 /// All that a session is at one moment: plain data, cheap to take and to keep. Input that waits for its tick is not part
@@ -58,16 +58,17 @@ impl Sim {
     /// The session of `checkpoint` in memory of its own: it goes on as the other one did, to the bit.
     pub fn resume(checkpoint: Checkpoint) -> Self {
         let Checkpoint { params, state } = checkpoint;
+        let stages = Stages::default();
         let mut rollback = Rollback::new();
         rollback.checkpoint((state.tick * TICK_US) as i64 - TICK_US as i64, &state);
         Self {
-            tectonics: Tectonics::default(),
+            tectonics: Tectonics::with_stage(stages.transport),
             field: TectonicField::still(state.world.map.extent(), &params.mountain),
             field_of: None,
             rates: Vec::new(),
             fold_rates: Vec::new(),
             skeletons: Vec::new(),
-            folding: Folding::default(),
+            folding: Folding::new(stages.folds),
             ahead: false,
             exposure: Exposure::default(),
             isostasy: params
@@ -85,6 +86,14 @@ impl Sim {
             rollback,
             params,
             state,
+        }
+    }
+
+    /// Lets `stages` compute from now on, and gives back those that did.
+    pub fn replace_stages(&mut self, stages: Stages) -> Stages {
+        Stages {
+            transport: self.tectonics.replace_stage(stages.transport),
+            folds: self.folding.replace_stage(stages.folds),
         }
     }
 

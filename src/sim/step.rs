@@ -18,6 +18,7 @@ use crate::isostasy::{Crust, Isostasy};
 use crate::mountain::fold::FoldDrive;
 use crate::mountain::strata::NodeFolds;
 use crate::mountain::tectonics::TectonicReport;
+use crate::mountain::transport::TransportStage;
 use crate::mountain::{PlateSet, TectonicField, Tectonics};
 use crate::surface::Cut;
 use crate::terrain::{Edges, Erosion, Flow, Outlets, Sediment};
@@ -108,7 +109,7 @@ pub struct Sim {
     pub(super) rollback: Rollback<State>,
     /// Contacts found out to be none, whatever checkpoint comes back.
     pub(super) banned: Vec<ContactKey>,
-    pub(super) tectonics: Tectonics,
+    pub(super) tectonics: Tectonics<Box<dyn TransportStage>>,
     /// Scratch of the stages.
     pub(super) field: TectonicField,
     /// The plates and the time that `field` and `rates` were computed for.

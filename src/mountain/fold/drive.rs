@@ -25,12 +25,16 @@ impl Drive {
     /// A fold shortens its layer by `(πA/λ)²/4`, so all folds together can be no higher than the shortening `ε` of the
     /// crust pays for, `Σ (πA_i/λ_i)²/4 ≤ ε/(1 − ε)`. The limit is that bound as a rate.
     pub fn amplitude_rate(&self, wavelength: f64, share: f64) -> f64 {
-        let (wanted, most) = (share * self.rate, wavelength * self.limit);
-        if wanted > 0.0 && most > 0.0 {
-            wanted / (1.0 + (wanted / most).powi(4)).powf(0.25)
-        } else {
-            0.0
-        }
+        lesser(share * self.rate, wavelength * self.limit)
+    }
+}
+
+/// The lesser of two rates, rounded where they meet; 0 unless both are positive.
+fn lesser(wanted: f64, most: f64) -> f64 {
+    if wanted > 0.0 && most > 0.0 {
+        wanted / (1.0 + (wanted / most).powi(4)).powf(0.25)
+    } else {
+        0.0
     }
 }
 
@@ -125,6 +129,15 @@ impl FoldDrive {
             direction: DVec2::from_angle(y.atan2(x) / 2.0),
             limit: self.limit.at(p),
         }
+    }
+
+    /// [`Drive::amplitude_rate`] of the drive at `p`, without its direction, which costs more than the rest.
+    pub fn amplitude_rate_at(&self, p: DVec2, wavelength: f64, share: f64) -> f64 {
+        let [x, y] = self.doubled(p);
+        if x == 0.0 && y == 0.0 {
+            return 0.0;
+        }
+        lesser(share * x.hypot(y), wavelength * self.limit.at(p))
     }
 
     /// `u_f·(cos 2φ, sin 2φ)` at `p`.

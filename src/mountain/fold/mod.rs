@@ -12,7 +12,8 @@
 //! | [`skeleton`] | which of its edges are crests |
 //! | [`lines`] | troughs between crests, crests and troughs as polylines |
 //! | [`edit`] | crests drawn or raised by hand |
-//! | [`shape`] | heights between crests and troughs, and rates of folding |
+//! | [`shape`] | heights between crests and troughs |
+//! | [`rates`] | how fast folds grow |
 //! | [`stats`] | figures of a fold graph for the report |
 //! | [`wavelength`] | the law from layers to wavelength |
 //!
@@ -27,6 +28,7 @@ pub mod edit;
 pub mod lines;
 pub mod mesh;
 mod nearest;
+pub mod rates;
 pub mod shape;
 pub mod skeleton;
 pub mod stats;
@@ -35,7 +37,9 @@ pub mod wavelength;
 pub use drive::{Drive, FoldDrive};
 pub use edit::{FoldEdit, FoldEditKind};
 pub use mesh::FoldMesh;
-pub use shape::{FoldRates, FoldShape};
+pub use nearest::PackedLines;
+pub use rates::{FoldRates, PointRates};
+pub use shape::{CpuFolds, FoldShape, FoldStage};
 pub use skeleton::Skeleton;
 pub use stats::FoldStats;
 

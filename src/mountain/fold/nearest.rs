@@ -18,6 +18,7 @@ const LANES: usize = 4;
 /// Segments by bucket.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Segments {
+    /// A whole number of buckets from the origin, so that all segments of one wavelength share a lattice.
     south_west: DVec2,
     bucket: f64,
     cols: usize,
@@ -40,7 +41,21 @@ struct Columns {
     inverse: Vec<f64>,
 }
 
-/// A segment relative to the middle of a tile, metres.
+/// Where the packed segments of one kind are, and their buckets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PackedLines {
+    /// The south-westernmost bucket's column and row in the lattice of buckets, which are as wide as a wavelength and begin
+    /// at the origin.
+    pub lattice: [i32; 2],
+    /// Columns and rows of buckets; none where there are no segments.
+    pub size: [u32; 2],
+    /// Where their starts begin.
+    pub first: u32,
+    /// Half the longest segment, metres.
+    pub half_length: f32,
+}
+
+/// A segment relative to the middle of a tile or a corner of a bucket, metres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
     pub(super) from: [f32; 2],
@@ -61,10 +76,11 @@ impl Segments {
             longest = longest.max(segment[0].distance_squared(segment[1]));
         }
         let bucket = BUCKET * wavelength;
-        let size = ((most - least) / bucket).floor();
+        let south_west = (least / bucket).floor() * bucket;
+        let size = ((most - south_west) / bucket).floor();
         let (cols, rows) = (size.x as usize + 1, size.y as usize + 1);
         let place = |segment: [DVec2; 2]| {
-            let at = (middle(segment) - least) / bucket;
+            let at = (middle(segment) - south_west) / bucket;
             at.y as usize * cols + at.x as usize
         };
         let mut first = vec![0_u32; cols * rows + 1];
@@ -97,7 +113,7 @@ impl Segments {
             columns.inverse[at] = if squared > 0.0 { 1.0 / squared } else { 0.0 };
         }
         Self {
-            south_west: least,
+            south_west,
             bucket,
             cols,
             rows,
@@ -105,6 +121,30 @@ impl Segments {
             half_length: longest.sqrt() / 2.0,
             columns,
         }
+    }
+
+    /// As [`FoldShape::pack`](super::FoldShape::pack), of one kind of line.
+    pub(super) fn pack(&self, starts: &mut Vec<u32>, lines: &mut Vec<[f32; 4]>) -> PackedLines {
+        let packed = PackedLines {
+            lattice: (self.south_west / self.bucket.max(f64::MIN_POSITIVE))
+                .round()
+                .as_ivec2()
+                .to_array(),
+            size: [self.cols as u32, self.rows as u32],
+            first: starts.len() as u32,
+            half_length: self.half_length as f32,
+        };
+        let begin = lines.len() as u32;
+        starts.extend(self.first.iter().map(|first| begin + first));
+        for (bucket, stretch) in self.first.windows(2).enumerate() {
+            let place = DVec2::new((bucket % self.cols) as f64, (bucket / self.cols) as f64);
+            let corner = self.south_west + place * self.bucket;
+            lines.extend((stretch[0]..stretch[1]).map(|k| {
+                let near = self.columns.relative(k as usize, corner);
+                [near.from[0], near.from[1], near.along[0], near.along[1]]
+            }));
+        }
+        packed
     }
 
     /// Distance from `p` to the nearest segment, at most `reach`.

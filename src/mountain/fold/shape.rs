@@ -1,32 +1,32 @@
-//! Heights of folds between crests and troughs, and the rates at which they grow.
+//! Heights of folds between crests and troughs.
 //!
 //! With `d_t` and `d_b` the distances to the nearest crest and trough,
 //!
 //! ```text
-//! λ(p) = 2 (d_t + d_b),     shape(p) = ½ (1 + cos(2π d_t / λ(p))),     rate(p) = amplitude(p) · raise(p) · shape(p):
+//! λ(p) = 2 (d_t + d_b),     shape(p) = ½ (1 + cos(2π d_t / λ(p))):
 //! ```
 //!
 //! 1 on crests, 0 on troughs, and continuous, since distances are. Beyond the last crests, where nothing is compressed,
 //! the shape fades to nothing.
 
 use std::f64::consts::PI;
+use std::fmt::Debug;
 
 use glam::DVec2;
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::drive::FoldDrive;
 use super::edit::{FoldEdit, Raises};
 use super::lines::{trough_node, troughs};
 use super::mesh::FoldMesh;
-use super::nearest::{Near, Segments};
+use super::nearest::{Near, PackedLines, Segments};
 use super::skeleton::Skeleton;
 use crate::mountain::grid::Grid;
 use crate::mountain::smoother;
 
 /// Distances to crests, in wavelengths, between which the shape fades out. Among compressed folds no place is as far from
 /// a crest as the first.
-const FADE: [f64; 2] = [1.5, 2.5];
+pub(crate) const FADE: [f64; 2] = [1.5, 2.5];
 
 /// Cells per side of a tile: within one the same few segments are in question, and a row of it fills a register.
 const TILE: usize = 8;
@@ -35,7 +35,7 @@ const TILE: usize = 8;
 const POINTS_PER_TASK: usize = 1024;
 
 /// Least sum of distances that is divided by, metres. Crests and troughs never touch.
-const TOUCH: f64 = 1e-6;
+pub(crate) const TOUCH: f64 = 1e-6;
 
 /// Largest difference between heights on a grid, computed in `f32`, and exact ones.
 pub const SHAPE_TOLERANCE: f64 = 1e-5;
@@ -48,15 +48,38 @@ pub struct FoldShape {
     troughs: Segments,
 }
 
-/// How fast the folds of one layer grow: what drives them, the layer's share `c_i` of the rate, and edits that raise.
-#[derive(Clone, Copy, Debug)]
-pub struct FoldRates<'a> {
-    /// What drives folds.
-    pub drive: &'a FoldDrive,
-    /// The layer's share of the drive's rate, 0–1.
-    pub share: f64,
-    /// Edits; those that raise folds count here.
-    pub edits: &'a [FoldEdit],
+/// The stage of heights; a twin on another device implements it too, and answers as [`CpuFolds`] does to
+/// [`SHAPE_TOLERANCE`].
+pub trait FoldStage: Debug + Send + Sync {
+    /// Heights at points (plan metres) as parts of the height of crests, 0–1; `out` gets one value per point.
+    fn at_points(&mut self, shape: &FoldShape, points: &[DVec2], out: &mut Vec<f64>);
+
+    /// The same at the cell centres of a grid, row by row from the north.
+    fn on_grid(&mut self, shape: &FoldShape, grid: Grid, out: &mut Vec<f32>);
+}
+
+impl<S: FoldStage + ?Sized> FoldStage for Box<S> {
+    fn at_points(&mut self, shape: &FoldShape, points: &[DVec2], out: &mut Vec<f64>) {
+        (**self).at_points(shape, points, out);
+    }
+
+    fn on_grid(&mut self, shape: &FoldShape, grid: Grid, out: &mut Vec<f32>) {
+        (**self).on_grid(shape, grid, out);
+    }
+}
+
+/// Points and tiles in parallel on the processor.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CpuFolds;
+
+impl FoldStage for CpuFolds {
+    fn at_points(&mut self, shape: &FoldShape, points: &[DVec2], out: &mut Vec<f64>) {
+        shape.at_points(points, out);
+    }
+
+    fn on_grid(&mut self, shape: &FoldShape, grid: Grid, out: &mut Vec<f32>) {
+        shape.on_grid(grid, out);
+    }
 }
 
 impl FoldShape {
@@ -102,14 +125,14 @@ impl FoldShape {
     }
 
     /// The same at many points; `out` gets one value per point.
-    pub fn at_points(&self, points: &[DVec2], out: &mut Vec<f32>) {
+    pub fn at_points(&self, points: &[DVec2], out: &mut Vec<f64>) {
         fill_points(points, out, |p| self.at(p));
     }
 
     /// The same with what `edits` raise; `out` gets one value per point.
     pub fn raised_at_points(&self, edits: &[FoldEdit], points: &[DVec2], out: &mut Vec<f32>) {
         let raises = Raises::of(edits, self.wavelength);
-        fill_points(points, out, |p| self.at(p) * raises.at(p));
+        fill_points(points, out, |p| (self.at(p) * raises.at(p)) as f32);
     }
 
     /// The same at the cell centres of a grid, row by row from the north, to [`SHAPE_TOLERANCE`].
@@ -146,38 +169,38 @@ impl FoldShape {
             });
     }
 
-    /// How fast the ground rises by folds at points, m/yr; `out` gets one value per point.
-    pub fn rates_at_points(&self, rates: &FoldRates<'_>, points: &[DVec2], out: &mut Vec<f32>) {
-        let raises = Raises::of(rates.edits, self.wavelength);
-        fill_points(points, out, |p| {
-            let shape = self.at(p);
-            if shape > 0.0 {
-                shape * self.crest_rate(rates, &raises, p)
-            } else {
-                0.0
-            }
-        });
+    /// Length of the folds' mesh, metres.
+    pub fn wavelength(&self) -> f64 {
+        self.wavelength
     }
 
-    /// How fast a crest at `p` would rise, m/yr.
-    fn crest_rate(&self, rates: &FoldRates<'_>, raises: &Raises, p: DVec2) -> f64 {
-        rates.drive.at(p).amplitude_rate(self.wavelength, rates.share) * raises.at(p)
+    /// Crests and troughs by bucket, for a stage on another device: `starts` gets where the segments of each bucket begin
+    /// and where the last one's end, row by row from the south, and `lines` the segments, from where and along which way,
+    /// metres, the former from the south-west corner of their bucket.
+    pub fn pack(&self, starts: &mut Vec<u32>, lines: &mut Vec<[f32; 4]>) -> [PackedLines; 2] {
+        starts.clear();
+        lines.clear();
+        [&self.crests, &self.troughs].map(|segments| segments.pack(starts, lines))
     }
 
     /// Farther than this from every crest there are no folds, metres.
-    fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         FADE[1] * self.wavelength
     }
 }
 
 /// One value per point, in parallel.
-fn fill_points(points: &[DVec2], out: &mut Vec<f32>, value: impl Fn(DVec2) -> f64 + Sync) {
-    out.resize(points.len(), 0.0);
+pub(super) fn fill_points<T: Copy + Default + Send>(
+    points: &[DVec2],
+    out: &mut Vec<T>,
+    value: impl Fn(DVec2) -> T + Sync,
+) {
+    out.resize(points.len(), T::default());
     out.par_chunks_mut(POINTS_PER_TASK)
         .zip(points.par_chunks(POINTS_PER_TASK))
         .for_each(|(out, points)| {
             for (out, &p) in out.iter_mut().zip(points) {
-                *out = value(p) as f32;
+                *out = value(p);
             }
         });
 }
@@ -254,7 +277,7 @@ fn half_turn_cos(x: f32) -> f32 {
 }
 
 /// Coefficients of `cos(π√z/2) / (1 − z)`: partial sums of those of the cosine.
-const QUOTIENT: [f32; 6] = quotient();
+pub(crate) const QUOTIENT: [f32; 6] = quotient();
 
 const fn quotient() -> [f32; 6] {
     let square = PI * PI / 4.0;
