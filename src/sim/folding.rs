@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::World;
+use crate::mountain::Stages;
 use crate::mountain::fold::{
     FoldDrive, FoldEdit, FoldMesh, FoldRates, FoldShape, FoldStage, PointRates, Skeleton, wavelength,
 };
@@ -75,6 +76,12 @@ pub(super) struct Folding {
     meshes: Vec<Arc<FoldMesh>>,
     shapes: Vec<(Skeleton, FoldShape)>,
     rates: PointRates,
+}
+
+impl Default for Folding {
+    fn default() -> Self {
+        Self::new(Stages::default().folds)
+    }
 }
 
 impl Folding {
