@@ -124,6 +124,7 @@ impl Bench {
         mut work: impl FnMut(&mut S) -> T,
     ) -> (S, T) {
         reset_peak();
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let before = Processors::now();
         let mut times = Vec::with_capacity(runs);
         let (last, result) = loop {
@@ -149,8 +150,10 @@ impl Bench {
             cpu_ms,
             peak_mib: peak_mib(),
             paper_ms,
+            // More threads than processors wait for each other.
             waited: before
                 .zip(Processors::now())
+                .filter(|_| rayon::current_num_threads() <= cores)
                 .map(|(then, now)| now.waited_since(then)),
         };
         self.print(&row);
