@@ -415,24 +415,23 @@ fn rivers_of_a_cone_have_no_preferred_direction() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    // Above the size from which passes are cut into tasks.
-    let tin = Tin::poisson(SQUARE, 50_000, 13).unwrap();
-    let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            let (z, erosion, sums) = evolve(&tin, &paper(), 1e5, 12);
-            (
-                z.iter().map(|z| z.to_bits()).collect::<Vec<_>>(),
-                erosion.drainage().to_vec(),
-                sums,
-            )
-        })
-    };
-    let alone = run(1);
-    assert!(alone == run(2) && alone == run(7));
+    // Above the sizes from which passes are cut into tasks, and rivers into blocks.
+    for (nodes, steps) in [(50_000, 12), (150_000, 4)] {
+        let tin = Tin::poisson(SQUARE, nodes, 13).unwrap();
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| {
+                let (z, erosion, sums) = evolve(&tin, &paper(), 1e5, steps);
+                let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+                (bits(&z), bits(erosion.drainage()), erosion.order().to_vec(), sums)
+            })
+        };
+        let alone = run(1);
+        assert!(alone == run(2) && alone == run(7));
+    }
 }
 
 #[test]

@@ -347,7 +347,7 @@ fn heights_that_are_no_numbers_do_no_harm() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let tin = Tin::poisson(SQUARE, 40_000, 13).unwrap();
+    let tin = Tin::poisson(SQUARE, 150_000, 13).unwrap();
     let uplift = vec![UPLIFT; tin.len()];
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
