@@ -127,19 +127,6 @@ fn boxes_that_cannot_be_are_refused_before_the_work() {
         &["replay", &file, "--region", "60,40,4"],
         &["--region", "--quality final"],
     );
-    refused(
-        &[
-            "replay",
-            &file,
-            "--quality",
-            "final",
-            "--nodes",
-            "20",
-            "--out",
-            "/dev/null/x",
-        ],
-        &["/dev/null"],
-    );
 }
 
 fn json(path: &Path) -> serde_json::Value {
