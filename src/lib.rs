@@ -47,7 +47,9 @@
 //!
 //! # Where to step in
 //!
-//! * A stage on the graphics card implements [`mountain::transport::TransportStage`], whose CPU version is the truth.
+//! * A stage on another device implements [`mountain::transport::TransportStage`] or [`mountain::fold::FoldStage`], whose
+//!   CPU versions are the truth, and reaches a session in [`mountain::Stages`]. Those of `gpu` are twins in shaders of the
+//!   same name.
 //! * A device hands its contacts to [`sim::Sim::feed`] as [`gesture::contact::InputFrame`]s, as a gesture file does; on
 //!   the live table to [`live::Session::send`].
 //! * Another solver of the land works on [`terrain::Tin`] and [`terrain::Forcing`].

@@ -176,6 +176,23 @@ const RULES: &[Rule] = &[
         reason: "sources know no world",
     },
     Rule {
+        module: "gpu",
+        forbidden: &[
+            "winit",
+            "egui::",
+            "crate::gesture",
+            "crate::terrain",
+            "crate::sim",
+            "crate::live",
+            "crate::render",
+            "crate::app",
+            "crate::cli",
+            "Instant::now",
+            "std::env",
+        ],
+        reason: "the card computes stages and knows neither who asks nor the time",
+    },
+    Rule {
         module: "device",
         forbidden: &[
             "winit",

@@ -7,6 +7,7 @@ use orogen::gesture::command::{Action, Arrow, Command};
 use orogen::gesture::contact::{Contact, ContactEvent, ContactKey, Phase, Side, Source};
 use orogen::gesture::file::read_gesture;
 use orogen::live::{Frame, LiveParams, Session, Start};
+use orogen::mountain::Stages;
 use orogen::rock::preset;
 use orogen::sim::{Sim, SimParams, TICK_US, World};
 use orogen::units::{DEFAULT_SHORT_SIDE, PlanMap};
@@ -27,6 +28,7 @@ fn params() -> LiveParams {
         sim,
         raster_width: 48,
         threads: 2,
+        stages: Stages::default(),
     }
 }
 

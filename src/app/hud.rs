@@ -376,6 +376,7 @@ impl Hud {
                 touch_ms: (health.touch_ms_p50, health.touch_ms_p95),
                 steps_per_s: health.steps_per_s,
                 nodes: table.nodes(),
+                stages: (table.stages.transport(), table.stages.folds()),
                 contacts: &contacts,
                 source: word(table.stream.heard()),
                 devices: &devices,

@@ -77,6 +77,9 @@ pub(super) struct Facts {
     /// Those that hands lead, and how fast the fastest of them turns, degrees per My.
     pub(super) plates_led: usize,
     pub(super) led_deg_per_my: f64,
+    /// Who computes the transport and heights of folds of the mountain: `cpu` or `gpu`.
+    pub(super) transport: &'static str,
+    pub(super) folds: &'static str,
     /// Graphics adapter.
     pub(super) adapter: String,
     /// Graphics interface.

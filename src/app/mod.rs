@@ -22,6 +22,7 @@ mod screen;
 mod setup;
 mod sheets;
 mod shows;
+mod stages;
 mod table;
 mod told;
 mod touch;

@@ -12,6 +12,7 @@ use super::record::Recorder;
 use super::save::Saver;
 use super::setup::{door_params, globe_params, globe_samples, instrument_params, raster_width, window_map};
 use super::shows::Shows;
+use super::stages::{self, Chosen};
 use super::worlds::Worlds;
 use super::{AppError, Options};
 use crate::gesture::command::{Action, Command, Mode};
@@ -23,6 +24,7 @@ use crate::input::window::{TouchPhase, WindowInput};
 use crate::instrument::{ControlId, Instrument, Key, Route};
 use crate::kiosk::{DoorPhase, Kiosk, KioskParams, Phase, StaffDoor};
 use crate::live::{Frame, LiveParams};
+use crate::mountain::Stages;
 use crate::rock::Stratigraphy;
 use crate::settings::Settings;
 use crate::sim::SimParams;
@@ -97,6 +99,7 @@ pub(super) struct Table {
     pub(super) resets: u64,
     pub(super) in_reset: bool,
     pub(super) control_presses: u64,
+    pub(super) stages: Chosen,
     now_us: u64,
     cleaning_until_us: u64,
     /// When each contact that is down landed.
@@ -119,7 +122,7 @@ impl Table {
         let fixed = settings.quality.nodes.map(|nodes| nodes as usize);
         let nodes = Nodes::new(fixed, map, software);
         let count = nodes.count();
-        let mountain = LiveParams {
+        let mut mountain = LiveParams {
             map,
             nodes: count,
             seed: SEED,
@@ -127,7 +130,10 @@ impl Table {
             sim: SimParams::default(),
             raster_width: raster_width(software),
             threads: 0,
+            stages: Stages::default(),
         };
+        let (stages, chosen) = stages::choose(settings.quality.stages, software, &mountain);
+        mountain.stages = stages;
         let mut worlds = Worlds::new(mountain, nodes, globe_params(size_mm, software))
             .map_err(|error| AppError::Other(format!("the session cannot begin: {error}")))?;
         let home = options.mode.unwrap_or(settings.mode);
@@ -174,6 +180,7 @@ impl Table {
             resets: 0,
             in_reset: false,
             control_presses: 0,
+            stages: chosen,
             now_us: 0,
             cleaning_until_us: 0,
             since_us: BTreeMap::new(),

@@ -40,6 +40,8 @@ impl Table {
             devices_lost: u64::from(devices_lost),
             scale,
             elapsed_yr: worlds.clock().elapsed_yr,
+            transport: self.stages.transport(),
+            folds: self.stages.folds(),
             adapter: info.name.clone(),
             backend: info.backend.to_string(),
             width,

@@ -219,6 +219,21 @@ struct ReplayArgs {
     /// slice.svg and slice.png; may be given several times.
     #[arg(long = "slice", value_name = "X0,Y0,X1,Y1", value_parser = parse_ends, allow_hyphen_values = true)]
     slices: Vec<[DVec2; 2]>,
+    /// Who computes transport and heights of folds. The processor's results are the same bits on every machine; a
+    /// graphics card's are as right, but equal to those only within rounding, and report.json says `reproducible: false`.
+    #[cfg(feature = "app")]
+    #[arg(long, value_enum, default_value_t = StageChoice::Cpu)]
+    stages: StageChoice,
+}
+
+/// Who computes the stages that a graphics card can compute.
+#[cfg(feature = "app")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum StageChoice {
+    /// The processor.
+    Cpu,
+    /// A graphics card.
+    Gpu,
 }
 
 #[derive(Debug, Args)]

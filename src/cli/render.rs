@@ -1,6 +1,7 @@
-//! The land at evening, drawn by the table's own renderer.
+//! What the command line has of the graphics card: the land at evening, drawn by the table's own renderer, and stages.
 
 use std::io::Write as _;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -9,7 +10,8 @@ use super::console::Console;
 use super::failure::Failure;
 use super::output::png;
 use crate::export::OutDir;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError, GpuFolds, GpuTransport};
+use crate::mountain::Stages;
 use crate::render::{Camera, Focus, LandStyle, RenderQuality, flight, picture};
 use crate::surface::Surface;
 
@@ -22,6 +24,8 @@ const WIDEST: f64 = 3840.0;
 /// What helps where nothing can draw.
 const REMEDY: &str =
     "install a Vulkan driver (mesa-vulkan-drivers draws without a graphics card), or use `--picture map`";
+/// What helps where nothing can compute.
+const STAGES_REMEDY: &str = "install a Vulkan driver, or use `--stages cpu`";
 
 /// What draws the picture, if `choice` wants one.
 pub(super) fn adapter(choice: PictureChoice) -> Result<Option<Gpu>, Failure> {
@@ -36,6 +40,18 @@ pub(super) fn adapter(choice: PictureChoice) -> Result<Option<Gpu>, Failure> {
         }
         Err(error) => Err(Failure::no_display(format!("{error}; {REMEDY}"))),
     }
+}
+
+/// Stages on the best adapter.
+pub(super) fn stages() -> Result<Stages, Failure> {
+    let on_card = || -> Result<Stages, GpuError> {
+        let gpu = Arc::new(Gpu::computing()?);
+        Ok(Stages {
+            transport: Box::new(GpuTransport::new(&gpu)?),
+            folds: Box::new(GpuFolds::new(&gpu)?),
+        })
+    };
+    on_card().map_err(|error| Failure::no_display(format!("{error}; {STAGES_REMEDY}")))
 }
 
 /// Draws the land as the flight over it begins, as wide as `surface` has columns, or 4K.

@@ -10,6 +10,8 @@ use super::console::Console;
 use super::failure::Failure;
 use super::output::{Pictures, Timings, draw_frame, land_of, write_json};
 use super::{Common, PictureChoice, Quality, ReplayArgs, Switch, globe, on_threads, refine, slice};
+#[cfg(feature = "app")]
+use super::{StageChoice, render};
 use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
@@ -51,6 +53,8 @@ pub(super) fn builtin(console: Console) -> Result<(), Failure> {
         isostasy: Switch::On,
         deposition: Switch::On,
         slices: Vec::new(),
+        #[cfg(feature = "app")]
+        stages: StageChoice::Cpu,
     };
     run(&args, console)
 }
@@ -166,7 +170,16 @@ fn session(file: &GestureFile, args: &ReplayArgs) -> Result<Sim, Failure> {
     }
     let world = World::new(plan(file), nodes, seed).map_err(Failure::input)?;
     let pile = named_pile(&args.layers, Path::new("")).map_err(Failure::input)?;
-    Ok(Sim::new(world.with_layers(pile), params))
+    #[cfg_attr(
+        not(feature = "app"),
+        expect(unused_mut, reason = "there is no card to hand stages to")
+    )]
+    let mut sim = Sim::new(world.with_layers(pile), params);
+    #[cfg(feature = "app")]
+    if args.stages == StageChoice::Gpu {
+        sim.replace_stages(render::stages()?);
+    }
+    Ok(sim)
 }
 
 fn play(

@@ -62,7 +62,9 @@ impl GpuFolds {
     /// The same with another longest wait for the card.
     #[must_use]
     pub fn with_patience(mut self, patience: Duration) -> Self {
-        self.twin = self.twin.adjusted(|twin| twin.program.patience = patience);
+        if let Some(twin) = self.twin.get_mut() {
+            twin.program.patience = patience;
+        }
         self
     }
 
@@ -83,6 +85,10 @@ impl FoldStage for GpuFolds {
         if !self.twin.does(|twin| twin.on_grid(shape, grid, out)) {
             self.cpu.on_grid(shape, grid, out);
         }
+    }
+
+    fn is_reproducible(&self) -> bool {
+        !self.twin.works()
     }
 }
 

@@ -97,6 +97,16 @@ impl Gpu {
         })
     }
 
+    /// The best device that computes, for stages alone: what they wait for keeps no picture waiting.
+    ///
+    /// # Errors
+    /// When no adapter of the better interfaces gives a device, or the best of them only draws.
+    pub fn computing() -> Result<Self, GpuError> {
+        let gpu = Self::find(&instance(None), None)?;
+        gpu.can_compute()?;
+        Ok(gpu)
+    }
+
     /// The best device that can draw into `surface`, which `instance` made.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use super::GpuError;
 pub struct OnCard(Arc<AtomicBool>);
 
 impl OnCard {
-    /// True until the card has failed.
+    /// True until the card has failed or the stage is gone.
     pub fn get(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
@@ -34,14 +34,18 @@ impl<T> Twin<T> {
         }
     }
 
+    /// True until it fails.
+    pub(super) fn works(&self) -> bool {
+        self.working.is_some()
+    }
+
     pub(super) fn on_card(&self) -> OnCard {
         self.on_card.clone()
     }
 
-    /// Lets `adjust` at the twin, if there still is one.
-    pub(super) fn adjusted(mut self, adjust: impl FnOnce(&mut T)) -> Self {
-        self.working.as_mut().map(adjust);
-        self
+    /// The twin, if there still is one.
+    pub(super) fn get_mut(&mut self) -> Option<&mut T> {
+        self.working.as_mut()
     }
 
     /// True where the twin has done `work`; otherwise somebody else has to. A twin that fails once is not asked again.
@@ -60,5 +64,11 @@ impl<T> Twin<T> {
         self.working = None;
         self.on_card.0.store(false, Ordering::Relaxed);
         false
+    }
+}
+
+impl<T> Drop for Twin<T> {
+    fn drop(&mut self) {
+        self.on_card.0.store(false, Ordering::Relaxed);
     }
 }

@@ -62,7 +62,9 @@ impl GpuTransport {
     /// The same with another longest wait for the card.
     #[must_use]
     pub fn with_patience(mut self, patience: Duration) -> Self {
-        self.twin = self.twin.adjusted(|twin| twin.program.patience = patience);
+        if let Some(twin) = self.twin.get_mut() {
+            twin.program.patience = patience;
+        }
         self
     }
 
@@ -77,6 +79,10 @@ impl TransportStage for GpuTransport {
         if !self.twin.does(|twin| twin.run(problem, out)) {
             self.cpu.run(problem, out);
         }
+    }
+
+    fn is_reproducible(&self) -> bool {
+        !self.twin.works()
     }
 }
 

@@ -9,7 +9,8 @@
 //!
 //! * The thread reads no clock. [`Session::advance`] tells it how far the table's time has come, and it plays the ticks
 //!   of 16 ms up to there. A session that falls behind is slowed, never skipped: its contacts happen closer together.
-//! * What is played live is on the raster of gesture files, so that the last minute ([`Ring`]) replays to the bit.
+//! * What is played live is on the raster of gesture files, so that the last minute ([`Ring`]) replays to the bit (where
+//!   a graphics card computes stages, to its rounding).
 //! * A panic costs at most the last second: the session goes on from the last good moment, without contacts.
 
 mod chart;

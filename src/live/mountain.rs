@@ -9,13 +9,14 @@ use super::{Frame, Ring};
 use crate::gesture::command::{Action, Command};
 use crate::gesture::contact::InputFrame;
 use crate::gesture::file::Header;
+use crate::mountain::Stages;
 use crate::rock::{Stratigraphy, preset};
 use crate::sim::{Checkpoint, Sim, SimParams, TICK_US, World};
 use crate::terrain::TinError;
 use crate::units::{MYR, PlanMap};
 
 /// What a session of the mountain needs to know.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct LiveParams {
     /// How the table lies on the land.
     pub map: PlanMap,
@@ -31,6 +32,8 @@ pub struct LiveParams {
     pub raster_width: usize,
     /// Threads that compute; 0 takes one per core.
     pub threads: usize,
+    /// Who computes transport and folds.
+    pub stages: Stages,
 }
 
 /// What a session of the mountain begins again with.
@@ -73,10 +76,11 @@ impl Play for Mountain {
         params.threads
     }
 
-    fn open(params: LiveParams) -> io::Result<Self> {
+    fn open(mut params: LiveParams) -> io::Result<Self> {
         let first = new_world(&params, params.seed)
             .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
-        let sim = Sim::new(first.clone(), params.sim.clone());
+        let mut sim = Sim::new(first.clone(), params.sim.clone());
+        sim.replace_stages(std::mem::take(&mut params.stages));
         Ok(Self {
             chart: Chart::new(&first, params.raster_width),
             ring: new_ring(&first, &params.sim),
@@ -122,7 +126,7 @@ impl Play for Mountain {
             }
             Start::World(world) => *world,
         };
-        self.sim = Sim::new(world.clone(), self.params.sim.clone());
+        self.go_on_with(Sim::new(world.clone(), self.params.sim.clone()));
         self.good = self.sim.checkpoint();
         self.ring = new_ring(&world, &self.params.sim);
         if Arc::ptr_eq(&world.tin, &self.first.tin) {
@@ -138,7 +142,7 @@ impl Play for Mountain {
     }
 
     /// After a panic: the last good moment comes back, without contacts. If that panics again within a second, its land
-    /// alone; if that does too, the land that the session began with.
+    /// alone, and from then on the processor computes all stages; if that does too, the land that the session began with.
     fn recover(&mut self, relapses: u32) {
         let tick = self.sim.ticks();
         let afresh = |world: &World| Sim::new(world.clone(), self.params.sim.clone()).checkpoint();
@@ -148,7 +152,10 @@ impl Play for Mountain {
             _ => afresh(&self.first),
         };
         self.good = checkpoint.at_tick(tick);
-        self.sim = Sim::resume(self.good.clone());
+        self.go_on_with(Sim::resume(self.good.clone()));
+        if relapses > 0 {
+            self.sim.replace_stages(Stages::default());
+        }
         self.sim.cancel_contacts();
         self.ring.cancel_contacts(tick * TICK_US);
         // The panic may have come while the chart was half-way to another land.
@@ -172,6 +179,12 @@ impl Mountain {
             return first.clone();
         }
         new_world(&self.params, seed).unwrap_or_else(|_| first.clone())
+    }
+
+    /// Goes on with another session, which the same stages compute.
+    fn go_on_with(&mut self, mut sim: Sim) {
+        sim.replace_stages(self.sim.replace_stages(Stages::default()));
+        self.sim = sim;
     }
 }
 

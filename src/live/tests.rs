@@ -6,6 +6,7 @@ use super::*;
 use crate::gesture::command::{Action, Command};
 use crate::gesture::contact::{Contact, ContactKey, Phase, Source};
 use crate::gesture::file::read_gesture;
+use crate::mountain::Stages;
 use crate::sim::{Sim, SimParams, TICK_US};
 use crate::units::{DEFAULT_SHORT_SIDE, PlanMap};
 
@@ -27,6 +28,7 @@ impl Table {
             sim,
             raster_width: 24,
             threads: 1,
+            stages: Stages::default(),
         });
         Self {
             session: session.unwrap(),

@@ -108,6 +108,11 @@ impl<S: TransportStage> Tectonics<S> {
         }
     }
 
+    /// The implementation of the transport.
+    pub fn stage(&self) -> &S {
+        &self.stage
+    }
+
     /// Uses another implementation from now on, and gives the old one back.
     pub fn replace_stage(&mut self, stage: S) -> S {
         std::mem::replace(&mut self.stage, stage)

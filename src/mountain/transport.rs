@@ -131,11 +131,20 @@ impl TransportField {
 pub trait TransportStage: Debug + Send + Sync {
     /// Fills `out` for `problem`.
     fn run(&mut self, problem: &TransportProblem, out: &mut TransportField);
+
+    /// False where what it computes is right within the tolerance alone, and not the same bits on every machine.
+    fn is_reproducible(&self) -> bool {
+        true
+    }
 }
 
 impl<S: TransportStage + ?Sized> TransportStage for Box<S> {
     fn run(&mut self, problem: &TransportProblem, out: &mut TransportField) {
         (**self).run(problem, out);
+    }
+
+    fn is_reproducible(&self) -> bool {
+        (**self).is_reproducible()
     }
 }
 

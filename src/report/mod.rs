@@ -45,6 +45,9 @@ pub struct Report {
     pub contacts: ContactFacts,
     /// Numbers that were none and never reached the land.
     pub quarantine: QuarantineFacts,
+    /// The same input gives these bits on every machine. Not so where a graphics card has computed a stage: it is as
+    /// right, and rounds in its own way.
+    pub reproducible: bool,
     /// SHA-256 of the heights of all nodes, f64 little-endian in node order.
     pub digest: String,
 }
@@ -388,6 +391,7 @@ impl Report {
                 uplift_nodes: quarantine.uplift_nodes,
                 steps: quarantine.steps,
             },
+            reproducible: sim.is_reproducible(),
             digest: digest(&world.z),
         }
     }

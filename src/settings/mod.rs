@@ -147,6 +147,20 @@ pub struct QualitySettings {
     pub attract_hz: f64,
     /// The same on a software adapter, Hz.
     pub attract_software_hz: f64,
+    /// What computes transport and folds.
+    pub stages: Compute,
+}
+
+/// What computes the stages that a graphics card can compute.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compute {
+    /// Whichever is faster, measured when the table opens.
+    #[default]
+    Auto,
+    /// The processor.
+    Cpu,
+    /// A graphics card, while it works.
+    Gpu,
 }
 
 /// `[view]`: what is shown.
@@ -240,6 +254,7 @@ impl Default for Settings {
                 scale: None,
                 attract_hz: 30.0,
                 attract_software_hz: 10.0,
+                stages: Compute::Auto,
             },
             view: ViewSettings {
                 reduced_motion: false,
@@ -277,6 +292,11 @@ impl Tools {
     pub fn are_few(self, unattended: bool) -> bool {
         self == Self::Visitor || (self == Self::Auto && unattended)
     }
+}
+
+impl Compute {
+    /// All, with their names in the file.
+    pub const ALL: [(&'static str, Self); 3] = [("auto", Self::Auto), ("cpu", Self::Cpu), ("gpu", Self::Gpu)];
 }
 
 impl Listen {

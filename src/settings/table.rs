@@ -2,7 +2,7 @@
 
 use super::form::{Form, addresses, affine, affine_text};
 use super::keys::{Bound, Domain, Key, Value};
-use super::{Corner, Listen, Orientation, Tools};
+use super::{Compute, Corner, Listen, Orientation, Tools};
 use crate::gesture::command::Mode;
 
 const fn bound(unit: &'static str, min: f64, max: f64, step: f64) -> Bound {
@@ -45,6 +45,7 @@ const fn names<T: Copy, const N: usize>(table: &[(&'static str, T); N]) -> [&'st
 const ORIENTATIONS: [&str; 8] = names(&Orientation::ALL);
 const CORNERS: [&str; 4] = names(&Corner::ALL);
 const SOURCES: [&str; 4] = names(&Listen::ALL);
+const COMPUTE: [&str; 3] = names(&Compute::ALL);
 const TOOLS: [&str; 3] = names(&Tools::ALL);
 
 fn name_of<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> Value {
@@ -310,6 +311,14 @@ pub const KEYS: &[Key] = &[
         domain: Domain::Number(bound("Hz", 1.0, 60.0, 1.0)),
         get: |s| Value::Number(s.quality.attract_software_hz),
         set: |s, v| set_number(&mut s.quality.attract_software_hz, v),
+    },
+    Key {
+        section: "quality",
+        name: "stages",
+        help: "Who computes transport and folds: \"cpu\", \"gpu\"; \"auto\" takes the faster one; after a restart.",
+        domain: Domain::Choice(&COMPUTE),
+        get: |s| name_of(&Compute::ALL, &s.quality.stages),
+        set: |s, v| set_named(&Compute::ALL, &mut s.quality.stages, v),
     },
     Key {
         section: "view",

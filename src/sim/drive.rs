@@ -11,6 +11,7 @@ use crate::gesture::event::{HandEvent, HandId, Leg};
 use crate::mountain::fold::FoldDrive;
 use crate::mountain::residue::Residue;
 use crate::mountain::strata::NodeFolds;
+use crate::mountain::transport::TransportStage as _;
 use crate::mountain::{Applied, FaultTrace, Field, PlateId, PlateSet, PlateState, TectonicField};
 use crate::units::{KM, MYR};
 
@@ -145,6 +146,7 @@ impl Sim {
         let with = uplift(&before.without_residues());
         let without = uplift(&before.without_push(id, now_yr, params));
         let residue = Residue::new(id, &with, &without, old.expires_yr);
+        self.state.reproducible &= self.tectonics.stage().is_reproducible();
         self.state.world.plates.leave(residue);
     }
 
@@ -223,6 +225,7 @@ impl Sim {
         (self.fold_rates, self.skeletons) =
             self.folding
                 .rates(&self.state.world, &self.field.folding, &layers);
+        self.exact = self.tectonics.stage().is_reproducible() && self.folding.stage().is_reproducible();
         let world = &self.state.world;
         self.field_of = Some((world.plates.clone(), world.time_yr));
         true
@@ -252,6 +255,7 @@ impl Sim {
         let (state, field) = (&mut self.state, &self.field);
         let now_yr = state.world.time_yr;
         state.stale = false;
+        state.reproducible &= self.exact;
         state.world.skeletons.clone_from(&self.skeletons);
         let mut at_nodes = self.rates.clone();
         let mut folds = self.fold_rates.clone();

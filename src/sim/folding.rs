@@ -95,6 +95,11 @@ impl Folding {
         }
     }
 
+    /// What computes heights.
+    pub(super) fn stage(&self) -> &dyn FoldStage {
+        &*self.stage
+    }
+
     /// Uses another stage from now on, and gives the old one back.
     pub(super) fn replace_stage(&mut self, stage: Box<dyn FoldStage>) -> Box<dyn FoldStage> {
         std::mem::replace(&mut self.stage, stage)

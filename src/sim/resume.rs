@@ -65,6 +65,7 @@ impl Sim {
             tectonics: Tectonics::with_stage(stages.transport),
             field: TectonicField::still(state.world.map.extent(), &params.mountain),
             field_of: None,
+            exact: true,
             rates: Vec::new(),
             fold_rates: Vec::new(),
             skeletons: Vec::new(),

@@ -95,6 +95,8 @@ pub(super) struct State {
     pub(super) quarantine: Quarantine,
     /// Figures of the last uplift that plates drove.
     pub(super) last_motion: Option<TectonicReport>,
+    /// All that this state came from was computed to the bit.
+    pub(super) reproducible: bool,
     /// What made layers fold at that time.
     pub(super) last_folding: Option<Arc<FoldDrive>>,
 }
@@ -114,6 +116,8 @@ pub struct Sim {
     pub(super) field: TectonicField,
     /// The plates and the time that `field` and `rates` were computed for.
     pub(super) field_of: Option<(PlateSet, f64)>,
+    /// `field` and `fold_rates` were computed to the bit.
+    pub(super) exact: bool,
     /// Uplift of `field` at each node, m/yr; not yet looked through for numbers that are none.
     pub(super) rates: Vec<f64>,
     /// The same for folds.
@@ -158,6 +162,7 @@ impl Sim {
             counts: SessionCounts::default(),
             quarantine: Quarantine::default(),
             last_motion: None,
+            reproducible: true,
             last_folding: None,
             world,
         };
@@ -183,6 +188,11 @@ impl Sim {
     /// Figures of the last uplift that plates drove; `None` where nobody has pushed.
     pub fn last_motion(&self) -> Option<TectonicReport> {
         self.state.last_motion
+    }
+
+    /// True where the same input gives these bits on every machine: no stage on another device has had a part in them.
+    pub fn is_reproducible(&self) -> bool {
+        self.state.reproducible
     }
 
     /// Ticks done.

@@ -6,8 +6,7 @@ use orogen::gpu::Gpu;
 
 /// Something that computes. Where there is nothing, the tests say so and pass; with `OROGEN_REQUIRE_GPU=1` they fail.
 pub(crate) fn gpu() -> Option<Arc<Gpu>> {
-    let found = Gpu::offscreen().and_then(|gpu| gpu.can_compute().map(|()| gpu));
-    match found {
+    match Gpu::computing() {
         Ok(gpu) => Some(Arc::new(gpu)),
         Err(error) => {
             let required = std::env::var_os("OROGEN_REQUIRE_GPU").is_some_and(|value| value == "1");

@@ -56,6 +56,11 @@ pub trait FoldStage: Debug + Send + Sync {
 
     /// The same at the cell centres of a grid, row by row from the north.
     fn on_grid(&mut self, shape: &FoldShape, grid: Grid, out: &mut Vec<f32>);
+
+    /// False where what it computes is right within the tolerance alone, and not the same bits on every machine.
+    fn is_reproducible(&self) -> bool {
+        true
+    }
 }
 
 impl<S: FoldStage + ?Sized> FoldStage for Box<S> {
@@ -65,6 +70,10 @@ impl<S: FoldStage + ?Sized> FoldStage for Box<S> {
 
     fn on_grid(&mut self, shape: &FoldShape, grid: Grid, out: &mut Vec<f32>) {
         (**self).on_grid(shape, grid, out);
+    }
+
+    fn is_reproducible(&self) -> bool {
+        (**self).is_reproducible()
     }
 }
 

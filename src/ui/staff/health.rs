@@ -39,6 +39,8 @@ pub struct Health<'a> {
     pub steps_per_s: f64,
     /// Nodes of the terrain.
     pub nodes: usize,
+    /// Who computes transport and heights of folds.
+    pub stages: (&'a str, &'a str),
     /// Which source of touches is heard.
     pub source: &'a str,
     /// Touch devices beside the window, and what is wrong with them, a line each.
@@ -87,7 +89,7 @@ fn span(seconds: f64) -> String {
 
 pub(super) fn show(ui: &mut Ui, health: &Health<'_>) {
     let stats = &health.stats;
-    let rows: [(&str, String, bool); 13] = [
+    let rows: [(&str, String, bool); 14] = [
         (
             "Version",
             format!("{}, running for {}", health.version, span(health.uptime_s)),
@@ -111,6 +113,11 @@ pub(super) fn show(ui: &mut Ui, health: &Health<'_>) {
         (
             "Erosion",
             format!("{:.1} steps/s on {} nodes", health.steps_per_s, health.nodes),
+            false,
+        ),
+        (
+            "Transport, folds",
+            format!("{}, {}", health.stages.0, health.stages.1),
             false,
         ),
         ("Touch from", touch_from(health), false),
