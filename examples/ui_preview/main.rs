@@ -342,6 +342,7 @@ fn staff(context: &Context, screen: Rect, moment: &Moment, door: DoorPhase, page
         settings: &settings,
         health: &health,
         notice: page.is_none().then_some("Saved as table-007"),
+        final_done: None,
         scale: scale_for(screen.size(), screen.width() / size.x as f32),
     };
     let id = egui::Id::unique("preview panel");
