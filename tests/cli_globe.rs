@@ -1,21 +1,12 @@
 //! `orogen planet`, and `orogen replay` of the globe, as a person runs them.
 
+mod cli_common;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use cli_common::{listing, orogen, refused, text};
 use serde_json::Value;
-
-fn orogen(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_orogen"))
-        .args(args)
-        .output()
-        .expect("the binary runs")
-}
-
-fn text(path: &Path) -> String {
-    path.to_str().expect("a UTF-8 path").to_owned()
-}
 
 /// Good input: the picture that is named is there.
 fn done(args: &[&str]) {
@@ -24,25 +15,6 @@ fn done(args: &[&str]) {
     assert!(output.status.success(), "{args:?}: {error}");
     let shown = String::from_utf8_lossy(&output.stdout);
     assert!(Path::new(shown.trim_end()).is_file(), "names a file: {shown}");
-}
-
-/// Bad input: exit code 2 and one line that holds all of `words`.
-fn refused(args: &[&str], words: &[&str]) {
-    let output = orogen(args);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
-    assert_eq!(error.trim_end().lines().count(), 1, "one line: {error}");
-    for word in words {
-        assert!(error.contains(word), "{args:?}: `{word}` expected in: {error}");
-    }
-}
-
-fn listing(dir: &Path) -> Vec<String> {
-    let entries = fs::read_dir(dir).expect("folder");
-    let names = entries.map(|entry| entry.expect("entry").file_name().to_string_lossy().into_owned());
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    names
 }
 
 fn report(dir: &Path) -> Value {
