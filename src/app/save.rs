@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
+use super::table::Table;
 use crate::export::OutDir;
 use crate::live::Session;
 use crate::settings::Settings;
@@ -212,6 +213,39 @@ impl Saver {
             }
         };
         self.notice = Some((text, self.now_us + NEWS_US));
+    }
+}
+
+/// What staff save of the table.
+impl Table {
+    /// The land is to be saved.
+    pub(super) fn save(&mut self) {
+        self.saver.ask(self.worlds.session());
+    }
+
+    /// The land is to be saved at final quality.
+    pub(super) fn save_final(&mut self) {
+        self.saver.ask_final(self.worlds.session());
+    }
+
+    /// How much of a final land is done, 0–1.
+    pub(super) fn final_done(&self) -> Option<f32> {
+        self.saver.final_done()
+    }
+
+    /// Nobody wants the final land any more.
+    pub(super) fn cancel_final(&self) {
+        self.saver.cancel_final();
+    }
+
+    /// The last minute of contacts is to be saved.
+    pub(super) fn save_contacts(&mut self) {
+        self.saver.take_contacts(self.worlds.ring_file());
+    }
+
+    /// Writes the settings, if there is a file for them.
+    pub(super) fn save_settings(&mut self, settings: &Settings, path: Option<&Path>) {
+        self.saver.settings(settings, path);
     }
 }
 

@@ -1,7 +1,6 @@
 //! The table without its window: who owns which contact, which phase it is, what the session is told.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -398,36 +397,6 @@ impl Table {
     pub(super) fn start_afresh(&mut self, now_us: u64) {
         self.kiosk.reset(millis(now_us));
         self.carry_out(now_us);
-    }
-
-    /// The land is to be saved.
-    pub(super) fn save(&mut self) {
-        self.saver.ask(self.worlds.session());
-    }
-
-    /// The land is to be saved at final quality.
-    pub(super) fn save_final(&mut self) {
-        self.saver.ask_final(self.worlds.session());
-    }
-
-    /// How much of a final land is done, 0–1.
-    pub(super) fn final_done(&self) -> Option<f32> {
-        self.saver.final_done()
-    }
-
-    /// Nobody wants the final land any more.
-    pub(super) fn cancel_final(&self) {
-        self.saver.cancel_final();
-    }
-
-    /// The last minute of contacts is to be saved.
-    pub(super) fn save_contacts(&mut self) {
-        self.saver.take_contacts(self.worlds.ring_file());
-    }
-
-    /// Writes the settings, if there is a file for them.
-    pub(super) fn save_settings(&mut self, settings: &Settings, path: Option<&Path>) {
-        self.saver.settings(settings, path);
     }
 
     pub(super) fn take(&mut self, events: Vec<ContactEvent>, now_us: u64) {
