@@ -126,7 +126,9 @@ impl Play for Mountain {
             }
             Start::World(world) => *world,
         };
-        self.go_on_with(Sim::new(world.clone(), self.params.sim.clone()));
+        let stages = self.sim.replace_stages(Stages::default());
+        self.sim = Sim::new(world.clone(), self.params.sim.clone());
+        self.sim.replace_stages(stages);
         self.good = self.sim.checkpoint();
         self.ring = new_ring(&world, &self.params.sim);
         if Arc::ptr_eq(&world.tin, &self.first.tin) {
@@ -142,7 +144,8 @@ impl Play for Mountain {
     }
 
     /// After a panic: the last good moment comes back, without contacts. If that panics again within a second, its land
-    /// alone, and from then on the processor computes all stages; if that does too, the land that the session began with.
+    /// alone; if that does too, the land that the session began with. From then on the processor computes all stages:
+    /// nobody knows whose fault it was.
     fn recover(&mut self, relapses: u32) {
         let tick = self.sim.ticks();
         let afresh = |world: &World| Sim::new(world.clone(), self.params.sim.clone()).checkpoint();
@@ -152,10 +155,7 @@ impl Play for Mountain {
             _ => afresh(&self.first),
         };
         self.good = checkpoint.at_tick(tick);
-        self.go_on_with(Sim::resume(self.good.clone()));
-        if relapses > 0 {
-            self.sim.replace_stages(Stages::default());
-        }
+        self.sim = Sim::resume(self.good.clone());
         self.sim.cancel_contacts();
         self.ring.cancel_contacts(tick * TICK_US);
         // The panic may have come while the chart was half-way to another land.
@@ -179,12 +179,6 @@ impl Mountain {
             return first.clone();
         }
         new_world(&self.params, seed).unwrap_or_else(|_| first.clone())
-    }
-
-    /// Goes on with another session, which the same stages compute.
-    fn go_on_with(&mut self, mut sim: Sim) {
-        sim.replace_stages(self.sim.replace_stages(Stages::default()));
-        self.sim = sim;
     }
 }
 

@@ -10,6 +10,8 @@ mod picture;
 mod plates;
 mod touch;
 mod tuio;
+#[cfg(feature = "app")]
+mod twins;
 mod verdict;
 
 use std::time::Instant;
@@ -80,6 +82,8 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), Failure> {
         bench.globe()?;
         bench.touch()?;
         bench.tuio();
+        #[cfg(feature = "app")]
+        bench.twins()?;
         #[cfg(feature = "app")]
         bench.frames();
         Ok(bench)
