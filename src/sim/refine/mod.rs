@@ -86,8 +86,10 @@ pub enum RefineError {
 #[derive(Debug)]
 pub struct Refinement {
     erosion: ErosionParams,
-    /// The land so far.
-    land: World,
+    /// The land so far: that of the last level, or the one it is cut from.
+    land: Arc<World>,
+    /// Rain on its nodes as a factor, where rivers flow into a box; none: 1.
+    rain: Option<Vec<f64>>,
     /// Uplift rate of the land it began with, at its nodes, m/yr.
     uplift: (Arc<Tin>, Vec<f64>),
     cut: Option<Cut>,
@@ -105,7 +107,7 @@ struct Cut {
     region: Region,
     crossings: Crossings,
     /// The land around.
-    around: World,
+    around: Arc<World>,
 }
 
 /// A level that is being eroded.
@@ -155,7 +157,8 @@ impl Refinement {
         }
         Tin::check_nodes(nodes)?;
         let uplift = live.state.uplift.at_nodes.clone();
-        Ok(Self::new(&live.params, live.world().clone(), uplift, None, nodes))
+        let land = Arc::new(live.world().clone());
+        Ok(Self::new(&live.params, land, uplift, None, nodes))
     }
 
     /// Of a box of a `land` that has been refined as a whole.
@@ -163,25 +166,19 @@ impl Refinement {
     /// # Errors
     /// When the box cannot be cut out.
     pub fn of_region(params: &SimParams, land: &Refined, region: Region) -> Result<Self, RefineError> {
-        let world = &land.world;
-        region.check(world.tin.extent())?;
-        let mut flow = Flow::new(&world.tin);
-        flow.route(&world.tin, &world.z, outlets(params.erosion.edges), None);
+        let around = Arc::new(land.world.clone());
+        region.check(around.tin.extent())?;
+        let flow = routed(&around, params.erosion.edges, None);
         let cut = Cut {
-            crossings: Crossings::of(&world.tin, &flow, &region),
-            around: world.clone(),
+            crossings: Crossings::of(&around.tin, &flow, &region),
+            around: Arc::clone(&around),
             region,
         };
-        Ok(Self::new(
-            params,
-            world.clone(),
-            land.uplift.clone(),
-            Some(cut),
-            region.nodes(),
-        ))
+        let uplift = land.uplift.clone();
+        Ok(Self::new(params, around, uplift, Some(cut), region.nodes()))
     }
 
-    fn new(params: &SimParams, land: World, uplift: Vec<f64>, cut: Option<Cut>, nodes: usize) -> Self {
+    fn new(params: &SimParams, land: Arc<World>, uplift: Vec<f64>, cut: Option<Cut>, nodes: usize) -> Self {
         let mut erosion = params.erosion;
         if cut.is_some() {
             // Rivers leave a box where they left it, at the heights they had there.
@@ -198,6 +195,7 @@ impl Refinement {
             uplift: (Arc::clone(&land.tin), uplift),
             erosion,
             land,
+            rain: None,
             cut,
             levels,
             work: None,
@@ -235,11 +233,12 @@ impl Refinement {
         if work.step < work.steps {
             return Ok(true);
         }
-        if let Some(Work { mut world, .. }) = self.work.take() {
+        if let Some(Work { mut world, rain, .. }) = self.work.take() {
             if let Some(cut) = &self.cut {
                 cut.blend(&mut world);
             }
-            self.land = world;
+            self.land = Arc::new(world);
+            self.rain = rain;
         }
         Ok(!self.levels.is_empty())
     }
@@ -247,17 +246,12 @@ impl Refinement {
     /// The land as it is now: refined when [`Self::step`] has said so.
     pub fn finish(self) -> Refined {
         let dt_yr = self.years() / STEPS as f64;
-        let south_west = self.cut.as_ref().map_or(DVec2::ZERO, |cut| cut.region.south_west);
-        let world = self.land;
+        let places = shifted(&self.land.tin, self.south_west());
         let (tin, rates) = self.uplift;
-        let places = shifted(&world.tin, south_west);
-        let rain = self
-            .cut
-            .map(|cut| cut.crossings.rain(&world.tin, world.tin.border()));
         Refined {
             uplift: Resampling::new(&tin, &places).linear(&rates),
-            rain,
-            world,
+            rain: self.rain,
+            world: Arc::unwrap_or_clone(self.land),
             steps: STEPS,
             dt_yr,
         }
@@ -272,62 +266,77 @@ impl Refinement {
         }
     }
 
+    /// Where the plan of the refined land begins in that of the land it comes from, metres.
+    fn south_west(&self) -> DVec2 {
+        self.cut.as_ref().map_or(DVec2::ZERO, |cut| cut.region.south_west)
+    }
+
+    /// The box, if the next level is the first one in it: later ones have its own plan.
+    fn cutting(&self) -> Option<&Cut> {
+        self.cut
+            .as_ref()
+            .filter(|cut| Arc::ptr_eq(&cut.around, &self.land))
+    }
+
     /// Lays `nodes` into the land so far.
     fn lay(&self, nodes: usize) -> Result<Work, RefineError> {
-        let coarse = &self.land;
-        let steps = steps_of(self.levels.len());
-        let region = self.cut.as_ref().map(|cut| cut.region);
-        let extent = region.map_or(coarse.tin.extent(), |region| region.extent());
-        // The first level of a box is cut from the land around it, later ones have its own plan.
-        let cut_out = extent != coarse.tin.extent();
-        let origin = region
-            .filter(|_| cut_out)
-            .map_or(DVec2::ZERO, |region| region.south_west);
-        let in_all = region.map_or(DVec2::ZERO, |region| region.south_west);
+        let coarse = &*self.land;
+        let extent = self
+            .cut
+            .as_ref()
+            .map_or(coarse.tin.extent(), |cut| cut.region.extent());
+        let origin = self.cutting().map_or(DVec2::ZERO, |cut| cut.region.south_west);
         let tin = Tin::poisson(extent, nodes, coarse.seed)?;
-        let resampling = |tin: &Tin| shifted(tin, origin);
-        let places = resampling(&tin);
+        let places = shifted(&tin, origin);
         let places = Resampling::new(&coarse.tin, &places);
-        let smooth = places.smooth(&coarse.z);
-        let (tin, rain) = match &self.cut {
-            Some(cut) => {
-                let outlets = cut.crossings.outlets(&tin, &smooth);
-                let rain = cut.crossings.rain(&tin, &outlets);
-                (tin.with_border(outlets)?, Some(rain))
-            }
-            None => (tin, None),
-        };
         let mut world = coarse.resampled(Arc::new(tin), &places);
-        if let Some(region) = region.filter(|_| cut_out) {
-            world.map = PlanMap::new(DVec2::splat(1000.0), region.side);
-            world.plates = PlateSet::default();
-            world.skeletons.clear();
-            world.fold_edits.clear();
-            world.folded = None;
+        let wanted = world.z.clone();
+        let mut rain = None;
+        if let Some(cut) = &self.cut {
+            let outlets = cut.crossings.outlets(&world.tin, &wanted);
+            rain = Some(cut.crossings.rain(&world.tin, &outlets));
+            world.tin = Arc::new(Arc::unwrap_or_clone(world.tin).with_border(outlets)?);
         }
+        if let Some(cut) = self.cutting() {
+            cut.detach(&mut world);
+        }
+        let everywhere = shifted(&world.tin, self.south_west());
         let slopes = places.linear(&detail::slopes(&coarse.tin, &coarse.z));
-        let everywhere = shifted(&world.tin, in_all);
-        detail::roughen(
-            &everywhere,
-            &slopes,
-            coarse.tin.spacing(),
-            world.seed,
-            &mut world.z,
-        );
-        let mut flow = Flow::new(&coarse.tin);
-        let coarse_rain = (self.cut.as_ref().filter(|_| !cut_out))
-            .map(|cut| cut.crossings.rain(&coarse.tin, coarse.tin.border()));
-        flow.route(
-            &coarse.tin,
-            &coarse.z,
-            outlets(self.erosion.edges),
-            coarse_rain.as_deref(),
-        );
+        let spacing = coarse.tin.spacing();
+        detail::roughen(&everywhere, &slopes, spacing, world.seed, &mut world.z);
         for (i, &border) in world.tin.border().iter().enumerate() {
             if border {
-                world.z[i] = smooth[i];
+                world.z[i] = wanted[i];
             }
         }
+        self.lay_beds(&mut world, origin);
+        let last = self.levels.is_empty();
+        let folds = if last && self.cut.is_none() {
+            folds::finer(&mut world, self.years())
+        } else {
+            Vec::new()
+        };
+        let strength = || detail::strength(&everywhere, spacing, world.seed);
+        Ok(Work {
+            hold: Hold::new(&world.tin, HOLD_SPACINGS * spacing),
+            wanted,
+            base: Vec::new(),
+            folds,
+            rain,
+            exposure: Exposure::default(),
+            solver: Erosion::new(&world.tin),
+            strength: self.cut.is_some().then(strength),
+            years: self.years(),
+            step: 0,
+            steps: steps_of(self.levels.len()),
+            world,
+        })
+    }
+
+    /// Lays the rivers of the land so far into `world`, whose plan begins at `origin` of its.
+    fn lay_beds(&self, world: &mut World, origin: DVec2) {
+        let coarse = &*self.land;
+        let flow = routed(coarse, self.erosion.edges, self.rain.as_deref());
         let depth = |p: DVec2| self.cut.as_ref().map_or(1.0, |cut| cut.share(p));
         bed::lay_beds(
             (&coarse.tin, &coarse.z, &flow),
@@ -336,24 +345,6 @@ impl Refinement {
             depth,
             &mut world.z,
         );
-        let mut folds = Vec::new();
-        if self.levels.is_empty() && self.cut.is_none() {
-            folds = folds::finer(&mut world, self.years());
-        }
-        Ok(Work {
-            hold: Hold::new(&world.tin, HOLD_SPACINGS * coarse.tin.spacing()),
-            wanted: smooth,
-            base: Vec::new(),
-            folds,
-            rain,
-            exposure: Exposure::default(),
-            solver: Erosion::new(&world.tin),
-            strength: region.map(|_| detail::strength(&everywhere, coarse.tin.spacing(), world.seed)),
-            years: self.years(),
-            step: 0,
-            steps,
-            world,
-        })
     }
 }
 
@@ -410,6 +401,15 @@ impl Cut {
         self.region.share(p, self.around.tin.spacing())
     }
 
+    /// Makes a part of the land around a land of its own.
+    fn detach(&self, world: &mut World) {
+        world.map = PlanMap::new(DVec2::splat(1000.0), self.region.side);
+        world.plates = PlateSet::default();
+        world.skeletons.clear();
+        world.fold_edits.clear();
+        world.folded = None;
+    }
+
     /// Lets a refined box pass into the land around it at its edges.
     fn blend(&self, world: &mut World) {
         let places = shifted(&world.tin, self.region.south_west);
@@ -460,11 +460,15 @@ fn steps_of(later: usize) -> usize {
     if later == 0 { STEPS } else { EARLIER_STEPS }
 }
 
-fn outlets(edges: Edges) -> Outlets {
-    match edges {
+/// The water over a land.
+fn routed(land: &World, edges: Edges, rain: Option<&[f64]>) -> Flow {
+    let outlets = match edges {
         Edges::Fixed => Outlets::Border,
         Edges::Free => Outlets::Lowest,
-    }
+    };
+    let mut flow = Flow::new(&land.tin);
+    flow.route(&land.tin, &land.z, outlets, rain);
+    flow
 }
 
 /// Positions of nodes in a plan whose origin lies at `−origin` of theirs.
