@@ -1,6 +1,6 @@
 //! Times of what touch devices send.
 
-#[path = "../tests/hid_common/mod.rs"]
+#[path = "../tests/common/hid.rs"]
 mod hid_common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};

@@ -5,6 +5,7 @@
     reason = "counting allocations takes an allocator, whose trait is unsafe"
 )]
 
+#[path = "common/hid.rs"]
 mod hid_common;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -2,7 +2,7 @@
 //!
 //! The files are composed, not recorded, so that each shows one matter and nothing else, and so that they can be
 //! composed anew when the format or the matter changes. No clock and no machine gets into them: equal sources give
-//! equal bytes, and `tests/corpus_files.rs` holds the files in `gestures/` to that.
+//! equal bytes, and `tests/gesture/corpus_files.rs` holds the files in `gestures/` to that.
 
 mod corpus;
 

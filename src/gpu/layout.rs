@@ -1,4 +1,4 @@
-//! What is shared with the compute shaders: structs and constants. `tests/gpu_shaders.rs` compares the layouts.
+//! What is shared with the compute shaders: structs and constants. `tests/gpu/shaders.rs` compares the layouts.
 
 use std::f32::consts::{LN_2, LOG2_E};
 use std::fmt::Write as _;

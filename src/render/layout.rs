@@ -1,4 +1,4 @@
-//! What is shared with the shaders: uniforms, instances and constants. `tests/render_shaders.rs` compares the layouts.
+//! What is shared with the shaders: uniforms, instances and constants. `tests/gpu/render_shaders.rs` compares the layouts.
 
 use std::fmt::Write as _;
 
