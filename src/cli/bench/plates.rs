@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::goals::GRID;
 use super::{Bench, SEED, SQUARE, UPLIFT};
 use crate::cli::failure::Failure;
 use crate::gesture::contact::{Contact, ContactEvent, ContactKey, InputFrame, Phase, Side, Source};
@@ -21,36 +22,68 @@ const TICKS_TO_PUSH: u64 = 40;
 /// How far a pushing hand comes in a tick, table mm: a fifth of a metre per second.
 const STRIDE_MM: f64 = 3.0;
 
+/// What the paper took for one transport, ms.
+pub(super) const PAPER_TRANSPORT_MS: f64 = 10.0;
+
+/// Folds of one wavelength, and what the paper took for their stages, ms.
+pub(super) struct FoldSize {
+    /// Name of the rows.
+    pub(super) state: &'static str,
+    /// Wavelength, km.
+    pub(super) wavelength_km: f64,
+    /// Choosing crests and troughs.
+    pub(super) skeletons_ms: f64,
+    /// Heights on the grid.
+    pub(super) heights_ms: f64,
+}
+
+/// About the sizes of the paper: 955, 4,246 and 36,715 lines.
+pub(super) const FOLD_SIZES: [FoldSize; 3] = [
+    FoldSize {
+        state: "7 km",
+        wavelength_km: 7.0,
+        skeletons_ms: 0.9,
+        heights_ms: 2.1,
+    },
+    FoldSize {
+        state: "3 km",
+        wavelength_km: 3.0,
+        skeletons_ms: 3.7,
+        heights_ms: 1.4,
+    },
+    FoldSize {
+        state: "1 km",
+        wavelength_km: 1.0,
+        skeletons_ms: 53.0,
+        heights_ms: 2.8,
+    },
+];
+
 impl Bench {
     /// Transport of three plates on 1024² cells, and the whole way from a moved finger to new uplift.
     pub(super) fn mountain(&mut self) {
-        let map = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE);
+        let map = table();
         let params = MountainParams::default();
         let mut tectonics = Tectonics::default();
         let plates = three_plates(&map, &params);
-        let cells = 1024 * 1024;
         let mut field = tectonics.compute(&plates, map.extent(), 0.0, &params);
-        let moved = plates.bodies(0.0).into_iter().map(|body| MovedBody {
-            hull: body.support.moved(&body.motion),
-            motion: body.motion,
-        });
-        let problem = TransportProblem {
-            grid: field.transport.grid,
-            bodies: moved.collect(),
-            exponent: params.exponent,
-            rest_weight: params.rest_weight(),
-        };
-        self.time(("transport", cells, "3 plates"), Some(10.0), 11, || {
-            CpuTransport.run(&problem, &mut field.transport);
-        });
-        self.time(("gesture_to_uplift", cells, "3 plates"), None, 11, || {
+        let problem = transport_of(&plates, &map, &params);
+        self.time(
+            ("transport", GRID, "3 plates"),
+            Some(PAPER_TRANSPORT_MS),
+            11,
+            || {
+                CpuTransport.run(&problem, &mut field.transport);
+            },
+        );
+        self.time(("gesture_to_uplift", GRID, "3 plates"), None, 11, || {
             tectonics.compute_into(&plates, map.extent(), 0.0, &params, &mut field);
         });
     }
 
     /// The whole way from a moved finger to the uplift and the folds that the nodes feel, as the session goes it.
     pub(super) fn gesture(&mut self) -> Result<(), Failure> {
-        let map = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE);
+        let map = table();
         let params = SimParams {
             fold_layers: 1,
             // The land stands still: its steps have rows of their own.
@@ -67,20 +100,19 @@ impl Bench {
         Ok(())
     }
 
-    /// Skeletons of folds, crests and troughs together, at about the sizes of the literature (955, 4,246 and 36,715
-    /// lines), and their heights on 1024² cells.
+    /// Skeletons of folds, crests and troughs together, and their heights on 1024² cells.
     pub(super) fn folds(&mut self) -> Result<(), Failure> {
-        let grid = Grid::over(SQUARE, 1024 * 1024);
-        let drive = FoldDrive::uniform(grid.blocks(), UPLIFT, 0.4);
-        let sizes = [
-            ("7 km", 7.0, 0.9, 2.1),
-            ("3 km", 3.0, 3.7, 1.4),
-            ("1 km", 1.0, 53.0, 2.8),
-        ];
-        for (state, wavelength, skeletons_ms, heights_ms) in sizes {
-            let mesh = FoldMesh::new(SQUARE, wavelength * KM, SEED).map_err(Failure::other)?;
+        let grid = fold_grid();
+        for FoldSize {
+            state,
+            wavelength_km,
+            skeletons_ms,
+            heights_ms,
+        } in FOLD_SIZES
+        {
+            let mesh = fold_mesh(wavelength_km)?;
             let choose = || {
-                let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
+                let skeleton = fold_skeleton(&mesh);
                 let lines = skeleton.top_len() + troughs(&mesh, &skeleton).len();
                 (skeleton, lines)
             };
@@ -131,6 +163,46 @@ fn hand(x: f64, y: f64) -> Vec<DVec2> {
         .collect()
 }
 
+/// Cells that heights of folds are computed on.
+pub(super) fn fold_grid() -> Grid {
+    Grid::over(SQUARE, GRID)
+}
+
+/// Where folds of a wavelength, km, may lie.
+pub(super) fn fold_mesh(wavelength_km: f64) -> Result<FoldMesh, Failure> {
+    FoldMesh::new(SQUARE, wavelength_km * KM, SEED).map_err(Failure::other)
+}
+
+/// Folds everywhere, across one direction.
+pub(super) fn fold_skeleton(mesh: &FoldMesh) -> Skeleton {
+    let drive = FoldDrive::uniform(fold_grid().blocks(), UPLIFT, 0.4);
+    Skeleton::select(mesh, &drive, None, &[])
+}
+
+/// The transport under three hands on a table.
+pub(super) fn three_plates_transport() -> TransportProblem {
+    let (map, params) = (table(), MountainParams::default());
+    transport_of(&three_plates(&map, &params), &map, &params)
+}
+
+fn transport_of(plates: &PlateSet, map: &PlanMap, params: &MountainParams) -> TransportProblem {
+    let moved = plates.bodies(0.0).into_iter().map(|body| MovedBody {
+        hull: body.support.moved(&body.motion),
+        motion: body.motion,
+    });
+    TransportProblem {
+        grid: Grid::over(map.extent(), params.cells),
+        bodies: moved.collect(),
+        exponent: params.exponent,
+        rest_weight: params.rest_weight(),
+    }
+}
+
+/// A touch table of 55 inches.
+fn table() -> PlanMap {
+    PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE)
+}
+
 /// Three hands of five fingers, one resting and two pushing towards it.
 fn three_plates(map: &PlanMap, params: &MountainParams) -> PlateSet {
     let mut plates = PlateSet::default();
@@ -172,7 +244,7 @@ mod tests {
 
     #[test]
     fn each_tick_of_the_session_brings_another_uplift() {
-        let map = PlanMap::new(DVec2::new(1209.6, 680.4), DEFAULT_SHORT_SIDE);
+        let map = table();
         let mut params = SimParams {
             pace_yr_per_s: 1.0,
             ..SimParams::default()
