@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::console::Console;
 use super::failure::Failure;
 use super::output::{LandFiles, Marks, Pictures, Timings, write_json};
-use super::{EdgeChoice, ErodeArgs, Switch, on_threads};
+use super::{EdgeChoice, ErodeArgs, Switch, memory, on_threads};
 use crate::export::{OutDir, digest};
 use crate::input::maps::{MapKind, read_map};
 use crate::report::{Inputs, REPORT_VERSION, TerrainFacts};
@@ -54,6 +54,7 @@ pub(super) fn run(args: &ErodeArgs, console: Console) -> Result<(), Failure> {
     within("--years", args.years, 0.0, 1e9)?;
     within("--dt", args.dt, 1.0, 1e8)?;
     within("--km", args.km, 0.01, 100_000.0)?;
+    memory::check(nodes(args))?;
     on_threads(args.common.threads, || {
         let maps = Maps::read(args)?;
         let stem = name(args);
@@ -61,6 +62,10 @@ pub(super) fn run(args: &ErodeArgs, console: Console) -> Result<(), Failure> {
         let out = OutDir::create(args.common.out.join(&stem)).map_err(Failure::input)?;
         erode(args, &maps, &params, &stem, (&out, &pictures), console)
     })
+}
+
+fn nodes(args: &ErodeArgs) -> usize {
+    args.common.nodes.unwrap_or(DEFAULT_NODES) as usize
 }
 
 fn within(option: &str, value: f64, low: f64, high: f64) -> Result<(), Failure> {
@@ -199,8 +204,7 @@ fn erode(
 ) -> Result<(), Failure> {
     let mut timings = Timings::start();
     let seed = args.common.seed.unwrap_or(DEFAULT_SEED);
-    let nodes = args.common.nodes.unwrap_or(DEFAULT_NODES) as usize;
-    let tin = Tin::poisson(maps.extent, nodes, seed).map_err(Failure::input)?;
+    let tin = Tin::poisson(maps.extent, nodes(args), seed).map_err(Failure::input)?;
     let mut z = maps
         .start
         .as_ref()

@@ -153,7 +153,8 @@ struct Common {
     /// Threads to compute with; the results are the same bits for any number (default: all cores).
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Nodes of the terrain, samples of a planet (default: the file's, else 60000).
+    /// Nodes of the terrain, samples of a planet (default: the file's, else 60000; at final quality a
+    /// million).
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=4_000_000))]
     nodes: Option<u32>,
     /// Pixels along the width of pictures and height maps, such as 1009, 2017, 4033, 8129 or a power of two (default:

@@ -12,11 +12,9 @@ use super::{Quality, ReplayArgs, memory};
 #[cfg(feature = "app")]
 use crate::app::LongWork;
 use crate::export::{OutDir, digest};
-use crate::report::TerrainFacts;
-#[cfg(feature = "app")]
-use crate::sim::Checkpoint;
+use crate::report::{RefinementFacts, TerrainFacts};
 use crate::sim::refine::{FINAL_NODES, RefineError, Refined, Refinement, Region};
-use crate::sim::{Sim, SimParams};
+use crate::sim::{Checkpoint, Sim, SimParams};
 use crate::terrain::{Flow, Outlets};
 use crate::units::{Extent, KM};
 
@@ -98,8 +96,9 @@ pub(super) fn play(
         None => None,
     };
     let params = live.params().clone();
+    let refinement = facts(&live, &refined);
     let land = Sim::resume(live.refined(refined));
-    write_session(&land, title, out, (size, pictures), timings)?;
+    write_session((&land, Some(refinement)), title, out, (size, pictures), timings)?;
     drop(land);
     if let Some((region, refined)) = region {
         let out = OutDir::create(out.path().join(FOLDER)).map_err(Failure::input)?;
@@ -126,20 +125,42 @@ fn run(mut refinement: Refinement, label: &str, console: Console) -> Result<Refi
     Ok(refinement.finish())
 }
 
+/// Part of the work on a final land that is done when its files begin.
+#[cfg(feature = "app")]
+const REFINED: f64 = 0.8;
+
 /// The final land of `live`, while `work` goes on.
 #[cfg(feature = "app")]
-pub(super) fn watched(live: &Checkpoint, work: &LongWork) -> Result<Sim, Failure> {
+pub(super) fn watched(live: &Checkpoint, work: &LongWork) -> Result<(Sim, RefinementFacts), Failure> {
     memory::check(FINAL_NODES)?;
     let mut refinement = Refinement::of_land(live, FINAL_NODES).map_err(failure)?;
     loop {
-        if !work.goes_on(refinement.progress()) {
-            return Err(Failure::other("cancelled"));
-        }
+        go_on(work, REFINED * refinement.progress())?;
         if !refinement.step().map_err(failure)? {
             break;
         }
     }
-    Ok(Sim::resume(live.clone().refined(refinement.finish())))
+    let refined = refinement.finish();
+    let facts = facts(live, &refined);
+    Ok((Sim::resume(live.clone().refined(refined)), facts))
+}
+
+/// Says how much of the work is done; an error where nobody wants it any more.
+#[cfg(feature = "app")]
+pub(super) fn go_on(work: &LongWork, done: f64) -> Result<(), Failure> {
+    if work.goes_on(done) {
+        Ok(())
+    } else {
+        Err(Failure::other("cancelled"))
+    }
+}
+
+fn facts(live: &Checkpoint, refined: &Refined) -> RefinementFacts {
+    RefinementFacts {
+        live_nodes: live.world().tin.len(),
+        steps: refined.steps,
+        dt_yr: refined.dt_yr,
+    }
 }
 
 /// `report.json` of a box.

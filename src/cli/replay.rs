@@ -16,7 +16,7 @@ use crate::export::OutDir;
 use crate::gesture::command::{Action, Mode};
 use crate::gesture::file::{GestureFile, read_gesture};
 use crate::input::pile::named_pile;
-use crate::report::Report;
+use crate::report::{RefinementFacts, Report};
 use crate::rock::preset;
 use crate::sim::{Sim, SimParams, World};
 use crate::units::{DEFAULT_SHORT_SIDE, PlanMap};
@@ -219,7 +219,13 @@ fn play(
     timings.lap("run_on");
 
     match args.quality {
-        Quality::Live => write_session(&sim, &title, &out, (args.common.size(), pictures), timings)?,
+        Quality::Live => write_session(
+            (&sim, None),
+            &title,
+            &out,
+            (args.common.size(), pictures),
+            timings,
+        )?,
         Quality::Final => refine::play(sim, args, (&title, &out), pictures, timings, console)?,
     }
     Console::result(&out.path().join(args.common.picture.shown()).display().to_string());
@@ -228,14 +234,15 @@ fn play(
 
 /// Writes all files of a session's land: pictures `size` pixels wide, maps, meshes, the report.
 pub(super) fn write_session(
-    sim: &Sim,
+    (sim, refinement): (&Sim, Option<RefinementFacts>),
     title: &str,
     out: &OutDir,
     (size, pictures): (u32, &Pictures),
     mut timings: Timings,
 ) -> Result<(), Failure> {
     let flow = sim.flow();
-    let report = Report::of_session(title, sim, &flow);
+    let mut report = Report::of_session(title, sim, &flow);
+    report.refinement = refinement;
     timings.lap("report");
     let k = vec![sim.params().erosion.k; sim.world().tin.len()];
     land_of(sim, &flow, &k, title).write(out, size, pictures, &mut timings)?;

@@ -80,16 +80,23 @@ const SAVED_TITLE: &str = "Orogen";
 fn save_land(land: &SavedLand, path: &Path, long: Option<&LongWork>) -> Result<(), Failure> {
     let mut timings = Timings::start();
     if let Some(work) = long {
-        let land = refine::watched(land, work)?;
+        let (land, refinement) = refine::watched(land, work)?;
         timings.lap("refine");
         let out = OutDir::create(path).map_err(Failure::input)?;
         let pictures = Pictures::new(PictureChoice::Map)?;
-        return replay::write_session(&land, SAVED_TITLE, &out, (refine::SIZE, &pictures), timings);
+        let land = (&land, Some(refinement));
+        let written = replay::write_session(land, SAVED_TITLE, &out, (refine::SIZE, &pictures), timings)
+            .and_then(|()| refine::go_on(work, 1.0));
+        if written.is_err() {
+            // Nobody else has written into this folder: its name was free.
+            let _ = std::fs::remove_dir_all(out.path());
+        }
+        return written;
     }
     let out = OutDir::create(path).map_err(Failure::input)?;
     let sim = Sim::resume(land.clone());
     let pictures = Pictures::new(PictureChoice::Map)?;
-    replay::write_session(&sim, SAVED_TITLE, &out, (SAVED_SIZE, &pictures), timings)
+    replay::write_session((&sim, None), SAVED_TITLE, &out, (SAVED_SIZE, &pictures), timings)
 }
 
 fn failure(error: AppError) -> Failure {

@@ -31,6 +31,8 @@ pub struct Report {
     pub orogen: &'static str,
     /// What went in.
     pub inputs: Inputs,
+    /// How the land of the session was refined, where it was.
+    pub refinement: Option<RefinementFacts>,
     /// The plates that stand at the end, oldest first.
     pub plates: Vec<PlateFacts>,
     /// The transport field at the last moment when a plate moved.
@@ -50,6 +52,17 @@ pub struct Report {
     pub reproducible: bool,
     /// SHA-256 of the heights of all nodes, f64 little-endian in node order.
     pub digest: String,
+}
+
+/// How a land got its detail after the session; no time passes for it.
+#[derive(Clone, Debug, Serialize)]
+pub struct RefinementFacts {
+    /// Nodes of the land that hands shaped.
+    pub live_nodes: usize,
+    /// Erosion steps on the last level.
+    pub steps: usize,
+    /// Length of one of them, years.
+    pub dt_yr: f64,
 }
 
 /// What went into a run.
@@ -372,6 +385,7 @@ impl Report {
                 m: params.erosion.m,
                 n: params.erosion.n,
             },
+            refinement: None,
             plates: world
                 .plates
                 .plates()

@@ -40,7 +40,10 @@ fn final_quality_writes_a_finer_land_and_a_box_of_it() {
         String::from_utf8_lossy(&output.stderr)
     );
     let out = dir.path().join("coarse");
-    assert_eq!(json(&out.join("report.json"))["inputs"]["nodes"], 9000);
+    let report = json(&out.join("report.json"));
+    assert_eq!(report["inputs"]["nodes"], 9000);
+    assert_eq!(report["refinement"]["live_nodes"], 2000);
+    assert_eq!(report["refinement"]["steps"], 100);
     let region = out.join("region");
     assert_eq!(listing(&region), OUTPUTS);
     let report = json(&region.join("report.json"));
