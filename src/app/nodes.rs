@@ -1,5 +1,6 @@
-//! How many nodes the land has: chosen by a measurement at the start, and changed by one rung where a fresh land begins
-//! anyway, so that nobody sees it.
+//! How many nodes the land has, and with them how fine the grid of the uplift is
+//! ([`MountainParams::for_nodes`](crate::mountain::MountainParams::for_nodes)): chosen by a measurement at the start, and
+//! changed by one rung where a fresh land begins anyway, so that nobody sees it.
 //!
 //! A session that falls behind its hands is slowed ([`crate::live::Live::slowed_us`]). Where that happened, the next land has
 //! fewer nodes. Spare time cannot be read off a session that keeps pace, so when some have, one rung more is tried, and given

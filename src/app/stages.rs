@@ -86,14 +86,15 @@ fn try_card(wish: Compute, params: &LiveParams) -> Result<(Stages, Chosen), GpuE
     }
     let (mut stages, mut chosen) = (Stages::default(), Chosen::default());
     let extent = params.map.extent();
+    let mountain = params.sim.mountain.clone().for_nodes(params.nodes);
     let mut transport = GpuTransport::new(&gpu)?;
-    let trial = try_transport(&mut transport, &hands(extent, &params.sim.mountain));
+    let trial = try_transport(&mut transport, &hands(extent, &mountain));
     if trial.told("transport", &gpu).passes(wish) && transport.on_card().get() {
         chosen.transport = Some(transport.on_card());
         stages.transport = Box::new(transport);
     }
     let mut folds = GpuFolds::new(&gpu)?;
-    if let Some((shape, points)) = folded(extent, params) {
+    if let Some((shape, points)) = folded(Grid::over(extent, mountain.cells), params) {
         let trial = try_folds(&mut folds, &shape, &points);
         if trial.told("heights of folds", &gpu).passes(wish) && folds.on_card().get() {
             chosen.folds = Some(folds.on_card());
@@ -203,11 +204,12 @@ fn hands(extent: Extent, params: &MountainParams) -> TransportProblem {
 }
 
 /// The longest folds of the land's rock, all over it, and places on it; `None` for rock that does not fold.
-fn folded(extent: Extent, params: &LiveParams) -> Option<(FoldShape, Vec<DVec2>)> {
+fn folded(grid: Grid, params: &LiveParams) -> Option<(FoldShape, Vec<DVec2>)> {
+    let extent = params.map.extent();
     let spacing = (extent.area() / params.nodes.max(1) as f64).sqrt();
     let layer = *folding_layers(&params.layers, spacing, 1).first()?;
     let mesh = FoldMesh::new(extent, layer.wavelength, params.seed).ok()?;
-    let drive = FoldDrive::uniform(Grid::over(extent, params.sim.mountain.cells).blocks(), 1e-3, 0.4);
+    let drive = FoldDrive::uniform(grid.blocks(), 1e-3, 0.4);
     let shape = FoldShape::new(&mesh, &Skeleton::select(&mesh, &drive, None, &[]));
     let places = Grid::over(extent, params.nodes / FOLDING);
     let points = (0..places.len()).map(|at| places.centre(at % places.cols, at / places.cols));

@@ -15,8 +15,9 @@ pub enum UpliftRule {
 /// Parameters of plates, transport and uplift. Lengths in metres, times in years, rates in m/yr.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountainParams {
-    /// Cells of the transport grid in all. Default 1024². Range 64²–2048²: below about 256² the rims of hulls get
-    /// rough, above 1024² a gesture no longer answers within a frame on two cores.
+    /// Cells of the transport grid in all; a land of few nodes has fewer ([`Self::for_nodes`]). Default 1024². Range
+    /// 64²–2048²: below about 256² the rims of hulls get rough, above 1024² a gesture no longer answers within a frame on
+    /// two cores.
     pub cells: usize,
     /// Exponent `e` of the distance weights of Eq. 2. Default 0.9 (the paper's). Range 0.5–2: towards 0 every plate
     /// carries everything, above 1 the strain leaves the hulls and gathers mid-gap.
@@ -118,7 +119,20 @@ impl Default for MountainParams {
     }
 }
 
+/// Cells for each node: a cell is then as wide as a quarter of the way between two nodes. What is finer, no node feels.
+const CELLS_PER_NODE: usize = 18;
+/// Cells that the rims of hulls need on any land.
+const LEAST_CELLS: usize = 256 * 256;
+
 impl MountainParams {
+    /// The same for a land of `nodes` nodes: its grid is no finer than they can feel. A table that can step few nodes has
+    /// no time for a fine grid either, and a recording made on it replays on the same one.
+    #[must_use]
+    pub fn for_nodes(mut self, nodes: usize) -> Self {
+        self.cells = self.cells.min((CELLS_PER_NODE * nodes).max(LEAST_CELLS));
+        self
+    }
+
     /// The published rules: no resting ground, no tapers, mean uplift 5e-4 m/yr whatever the push.
     pub fn paper() -> Self {
         Self {
@@ -134,5 +148,24 @@ impl MountainParams {
     /// The rest weight `1/D^e` of Eq. 2's denominator.
     pub fn rest_weight(&self) -> f64 {
         self.rest_distance.powf(-self.exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grid_is_no_finer_than_the_nodes_feel() {
+        let cells = |nodes| MountainParams::default().for_nodes(nodes).cells;
+        assert_eq!(cells(1_000_000), 1024 * 1024);
+        assert_eq!(cells(60_000), 1024 * 1024, "the usual land has the whole grid");
+        assert_eq!(cells(15_000), 270_000);
+        assert_eq!(cells(100), 256 * 256);
+        let few = MountainParams {
+            cells: 64 * 64,
+            ..MountainParams::default()
+        };
+        assert_eq!(few.for_nodes(60_000).cells, 64 * 64, "nobody asked for more");
     }
 }

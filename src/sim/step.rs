@@ -142,8 +142,10 @@ pub struct Sim {
 }
 
 impl Sim {
-    /// A session on `world`.
-    pub fn new(world: World, params: SimParams) -> Self {
+    /// A session on `world`, whose grid is no finer than its nodes feel
+    /// ([`MountainParams::for_nodes`](crate::mountain::MountainParams::for_nodes)).
+    pub fn new(world: World, mut params: SimParams) -> Self {
+        params.mountain = params.mountain.for_nodes(world.tin.len());
         let field = TectonicField::still(world.map.extent(), &params.mountain);
         let still = Uplift::still(&field, world.tin.len());
         let mut state = State {
