@@ -195,7 +195,7 @@ fn controls(moment: &Moment, clock: &Clock, near: bool) -> Vec<ControlView> {
         size_mm,
         corner: orogen::settings::Corner::default(),
         unattended: false,
-        folds: true,
+        artists: true,
         mode: Mode::Mountain,
         readouts: false,
         gesture: orogen::gesture::params::GestureParams::default(),

@@ -103,6 +103,8 @@ impl Table {
             match deed {
                 Deed::Command(command) => self.worlds.send(Vec::new(), vec![command], now_us),
                 Deed::Save { .. } => self.save(),
+                Deed::FinalLand { on: true, .. } => self.save_final(),
+                Deed::FinalLand { on: false, .. } => self.cancel_final(),
                 // The instrument remembers what it shows.
                 Deed::Readouts { .. } => {}
                 Deed::World { mode, .. } => self.turn_to(mode, now_us),

@@ -77,6 +77,7 @@ fn named(key: &WinitKey, control: bool) -> Option<Key> {
             ("o", false) => Some(Key::Tool(Tool::Sea)),
             ("i", false) => Some(Key::Readouts),
             ("s", _) => Some(Key::Save),
+            ("m", false) => Some(Key::Final),
             ("r", false) => Some(Key::StartOver),
             ("g", false) => Some(Key::World),
             ("+" | "=", false) => Some(Key::Faster),
@@ -97,6 +98,7 @@ mod tests {
         assert_eq!(letter("U", false), Some(Key::Undo));
         assert_eq!(letter("z", true), Some(Key::Undo));
         assert_eq!(letter("z", false), None);
+        assert_eq!(letter("M", false), Some(Key::Final));
         assert_eq!(letter("f", false), Some(Key::Tool(Tool::Fold)));
         assert_eq!(letter("c", false), Some(Key::Tool(Tool::Slice)));
         assert_eq!(letter("b", false), Some(Key::Tool(Tool::Land)));

@@ -82,7 +82,7 @@ pub(super) fn instrument_params(
         corner: settings.staff.corner,
         unattended,
         mode,
-        folds: !settings.view.tools.are_few(unattended),
+        artists: !settings.view.tools.are_few(unattended),
         readouts: settings.view.readouts,
         gesture: GestureParams::default(),
     }

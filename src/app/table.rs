@@ -478,6 +478,7 @@ impl Table {
             dt_s,
         );
         self.saver.step(now_us);
+        self.instrument.set_making(self.saver.final_done().map(f64::from));
     }
 }
 

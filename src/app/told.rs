@@ -217,6 +217,7 @@ fn kind_name(kind: ControlKind) -> &'static str {
         ControlKind::StartOver => "start_over",
         ControlKind::Readouts => "readouts",
         ControlKind::Save => "save",
+        ControlKind::Final => "final",
         ControlKind::World => "world",
         ControlKind::FreezeSlice => "freeze_slice",
         ControlKind::CloseSlice => "close_slice",

@@ -25,6 +25,9 @@ pub enum ControlKind {
     Readouts,
     /// The land is saved; absent on unattended tables.
     Save,
+    /// The final land is made, in a minute or two (`on`, `value` is how much of it is done), or given up again. Held, not
+    /// tapped: it takes half of the machine. One of the artist's tools.
+    Final,
     /// The other world is shown; `on` while that is the mountain, for the globe is what it offers.
     World,
     /// The side's cross-section stays as it is (`on`), or follows the land.

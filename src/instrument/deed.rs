@@ -70,6 +70,13 @@ pub enum Deed {
         /// The side that asked.
         side: Side,
     },
+    /// The final land is to be made, or given up.
+    FinalLand {
+        /// The side that asked.
+        side: Side,
+        /// True to make it.
+        on: bool,
+    },
     /// Somebody has tapped on the sheet of a cross-section, to put a note there.
     Note {
         /// The side whose sheet it is.
@@ -92,6 +99,8 @@ pub enum Key {
     Readouts,
     /// As [`super::ControlKind::Save`].
     Save,
+    /// As [`super::ControlKind::Final`]: held.
+    Final,
     /// As [`super::ControlKind::World`].
     World,
     /// One step faster.

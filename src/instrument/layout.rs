@@ -66,6 +66,7 @@ const GROUPS: [&[ControlKind]; 3] = [
         ControlKind::StartOver,
         ControlKind::Readouts,
         ControlKind::Save,
+        ControlKind::Final,
         ControlKind::World,
     ],
 ];
@@ -246,7 +247,7 @@ mod tests {
             for (unattended, globe) in [(false, false), (true, false), (false, true)] {
                 let Layout { placed, papers } = layout(size_mm, |kind| match kind {
                     ControlKind::Tool(tool) => tool.paint().is_some() == globe,
-                    ControlKind::Save => !unattended && !globe,
+                    ControlKind::Save | ControlKind::Final => !unattended && !globe,
                     _ => true,
                 });
                 for paper in papers {

@@ -21,6 +21,7 @@ impl Instrument {
             Key::Tool(tool) => ControlKind::Tool(tool),
             Key::Readouts => ControlKind::Readouts,
             Key::Save => ControlKind::Save,
+            Key::Final => ControlKind::Final,
             Key::World => ControlKind::World,
             Key::StartOver => ControlKind::StartOver,
             Key::Faster | Key::Slower if down => {
@@ -88,7 +89,11 @@ impl Instrument {
             ControlKind::Speed => Action::Speed(self.speeds().next(self.clock.pace_yr_per_s)),
             ControlKind::StartOver => Action::StartOver,
             ControlKind::Readouts => return self.toggle_readouts(side),
-            ControlKind::Save => return self.deeds.push(Deed::Save { side }),
+            ControlKind::Save if self.making.is_none() => return self.deeds.push(Deed::Save { side }),
+            ControlKind::Final => {
+                let on = self.making.is_none();
+                return self.deeds.push(Deed::FinalLand { side, on });
+            }
             ControlKind::World => {
                 let mode = match self.params.mode {
                     Mode::Mountain => Mode::Globe,
@@ -98,7 +103,7 @@ impl Instrument {
             }
             ControlKind::FreezeSlice => Action::FreezeSlice(self.cuts[side as usize] != Some(true)),
             ControlKind::CloseSlice => Action::CloseSlice,
-            ControlKind::Undo | ControlKind::Scrub => return,
+            ControlKind::Undo | ControlKind::Save | ControlKind::Scrub => return,
         };
         self.command(Some(action), side, finger.contact());
     }
@@ -145,6 +150,7 @@ impl Instrument {
                 ControlKind::Tool(tool) => self.tool(side) == tool,
                 ControlKind::PlayPause => !self.clock.paused,
                 ControlKind::Readouts => self.readouts(side),
+                ControlKind::Final => self.making.is_some(),
                 ControlKind::World => self.params.mode == Mode::Mountain,
                 ControlKind::FreezeSlice => self.cuts[side as usize] == Some(true),
                 _ => false,
@@ -152,9 +158,12 @@ impl Instrument {
             enabled: match kind {
                 ControlKind::Undo => self.clock.can_undo[side as usize],
                 ControlKind::Scrub => history::exists(&self.clock),
+                // One after the other.
+                ControlKind::Save => self.making.is_none(),
                 _ => true,
             },
             value: match kind {
+                ControlKind::Final => self.making.unwrap_or(0.0),
                 ControlKind::Speed => self.speeds().place(self.clock.pace_yr_per_s),
                 // While a finger drags it, the slider is where the finger is: the land follows.
                 ControlKind::Scrub => {

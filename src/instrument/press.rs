@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::control::ControlKind;
 use crate::gesture::contact::ContactKey;
 
-/// How long the land must be held to start over, µs.
+/// How long a control must be held that is not tapped, µs.
 const HOLD_US: u64 = 1_500_000;
 
 /// Shortest time between two steps of the slider, µs.
@@ -72,7 +72,7 @@ impl Press {
 
     /// Part of the time for which it must be held.
     pub(super) fn progress(&self, kind: ControlKind, now_us: u64) -> f64 {
-        if kind != ControlKind::StartOver || !self.inside {
+        if !is_held(kind) || !self.inside {
             0.0
         } else if self.done {
             1.0
@@ -83,7 +83,7 @@ impl Press {
 
     /// True when lifting the finger sets the control off.
     pub(super) fn acts_on_lift(&self, kind: ControlKind) -> bool {
-        self.inside && !matches!(kind, ControlKind::StartOver | ControlKind::Scrub)
+        self.inside && !is_held(kind) && kind != ControlKind::Scrub
     }
 
     /// Where the slider is to be sent, if it has gone on since it was sent last.
@@ -96,4 +96,9 @@ impl Press {
             part
         })
     }
+}
+
+/// True for controls that nobody shall set off by a tap.
+fn is_held(kind: ControlKind) -> bool {
+    matches!(kind, ControlKind::StartOver | ControlKind::Final)
 }

@@ -36,8 +36,8 @@ pub struct InstrumentParams {
     pub corner: Corner,
     /// True on unattended tables: nobody saves.
     pub unattended: bool,
-    /// The fold tool is offered.
-    pub folds: bool,
+    /// The artist's tools are offered: folds, and on attended tables the final land.
+    pub artists: bool,
     /// The world that is shown. The globe's tools are its brushes.
     pub mode: Mode,
     /// Figures are shown from the start.
@@ -51,7 +51,8 @@ impl InstrumentParams {
         let flat = self.mode == Mode::Mountain;
         layout(self.size_mm, |kind| match kind {
             ControlKind::Save => flat && !self.unattended,
-            ControlKind::Tool(Tool::Fold) => flat && self.folds,
+            ControlKind::Final => flat && !self.unattended && self.artists,
+            ControlKind::Tool(Tool::Fold) => flat && self.artists,
             ControlKind::Tool(Tool::Land | Tool::Sea) => !flat,
             ControlKind::Tool(_)
             | ControlKind::Scrub
@@ -84,6 +85,8 @@ pub struct Instrument {
     pub(super) stirred_us: [Option<u64>; 2],
     pointer: Option<DVec2>,
     pub(super) clock: Clock,
+    /// How much is done of the final land that is being made, 0–1.
+    pub(super) making: Option<f64>,
     pub(super) now_us: u64,
     pub(super) deeds: Vec<Deed>,
 }
@@ -106,6 +109,7 @@ impl Instrument {
             stirred_us: [None; 2],
             pointer: None,
             clock: Clock::default(),
+            making: None,
             now_us: 0,
             deeds: Vec::new(),
             params,
@@ -115,6 +119,11 @@ impl Instrument {
     /// What it was made for.
     pub fn params(&self) -> &InstrumentParams {
         &self.params
+    }
+
+    /// How much is done of the final land that is being made, 0–1; none while there is none.
+    pub fn set_making(&mut self, done: Option<f64>) {
+        self.making = done;
     }
 
     /// The tool of a side.

@@ -69,7 +69,7 @@ impl<'a> Control<'a> {
         let lit = view.on
             && matches!(
                 view.kind,
-                ControlKind::Tool(_) | ControlKind::Readouts | ControlKind::FreezeSlice
+                ControlKind::Tool(_) | ControlKind::Readouts | ControlKind::Final | ControlKind::FreezeSlice
             );
         let colour = if lit || view.pressed {
             AMBER
@@ -121,8 +121,13 @@ impl<'a> Control<'a> {
             strength: self.ink,
         };
         icons::control(glyph, view.kind, view.on, view.value);
-        if view.progress > 0.0 {
-            let sweep = TAU * view.progress.min(1.0) as f32;
+        // While it is held, how long; else how much is done of what it has set off.
+        let done = match view.kind {
+            ControlKind::Final if view.on && view.progress <= 0.0 => view.value.max(0.01),
+            _ => view.progress,
+        };
+        if done > 0.0 {
+            let sweep = TAU * done.min(1.0) as f32;
             let line = Line::solid(AMBER, self.strength, 2.0);
             pen.arc(self.centre, radius + 2.6, self.turn - FRAC_PI_2, sweep, line);
         }

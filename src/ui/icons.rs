@@ -82,6 +82,7 @@ pub(super) fn control(glyph: Glyph<'_>, kind: ControlKind, on: bool, value: f64)
         ControlKind::StartOver => start_over(glyph),
         ControlKind::Readouts => figures(glyph),
         ControlKind::Save => save(glyph),
+        ControlKind::Final => final_land(glyph),
         ControlKind::World if on => globe(glyph),
         ControlKind::World => mountain(glyph),
         ControlKind::FreezeSlice => freeze(glyph),
@@ -212,6 +213,19 @@ fn save(glyph: Glyph<'_>) {
     glyph.line(&[(0.0, -0.85), (0.0, 0.1)], 1.0);
     glyph.fill(&[(0.0, 0.4), (-0.28, 0.0), (0.28, 0.0)], 1.0);
     glyph.line(&[(-0.78, 0.2), (-0.78, 0.72), (0.78, 0.72), (0.78, 0.2)], 1.0);
+}
+
+/// A summit on whose flanks valleys branch, as fine as they come.
+fn final_land(glyph: Glyph<'_>) {
+    glyph.line(&[(-0.95, 0.62), (0.0, -0.82), (0.95, 0.62)], 1.0);
+    for towards in [-1.0, 1.0] {
+        glyph.line(
+            &[(0.0, -0.82), (0.16 * towards, -0.18), (0.3 * towards, 0.62)],
+            0.9,
+        );
+        glyph.line(&[(0.16 * towards, -0.18), (0.62 * towards, 0.62)], 0.7);
+    }
+    glyph.line(&[(0.0, -0.05), (0.0, 0.62)], 0.7);
 }
 
 /// A ball with a meridian and the equator.

@@ -41,6 +41,8 @@ pub(super) fn control(kind: ControlKind, on: bool) -> &'static str {
         (ControlKind::StartOver, _) => "reset",
         (ControlKind::Readouts, _) => "figures",
         (ControlKind::Save, _) => "save",
+        (ControlKind::Final, true) => "cancel",
+        (ControlKind::Final, false) => "final land",
         (ControlKind::World, true) => "planet",
         (ControlKind::World, false) => "mountain",
         (ControlKind::FreezeSlice, true) => "follow",

@@ -20,7 +20,7 @@ pub(crate) fn params() -> InstrumentParams {
         size_mm: SIZE_MM,
         corner: Corner::NorthWest,
         unattended: false,
-        folds: true,
+        artists: true,
         mode: Mode::Mountain,
         readouts: false,
         gesture: GestureParams::default(),

@@ -332,7 +332,7 @@ fn each_side_works_with_its_own_tool_at_the_same_time() {
 fn what_is_not_offered_cannot_be_held() {
     let mut table = with_tools(&[(Side::South, Tool::Fold), (Side::North, Tool::Slice)]);
     table.instrument.set_params(InstrumentParams {
-        folds: false,
+        artists: false,
         ..params()
     });
     let sent = commands(&mut table);
@@ -428,7 +428,7 @@ fn the_planet_has_no_tools_but_hands_and_the_way_back() {
     for kind in &kinds {
         let of_the_land = match kind {
             ControlKind::Tool(tool) => tool.paint().is_none(),
-            kind => matches!(kind, ControlKind::Scrub | ControlKind::Save),
+            kind => matches!(kind, ControlKind::Scrub | ControlKind::Save | ControlKind::Final),
         };
         assert!(!of_the_land, "{kind:?}");
     }

@@ -2,6 +2,7 @@
 
 mod instrument;
 mod instrument_edit;
+mod instrument_final;
 mod instrument_support;
 mod instrument_tools;
 mod kiosk;
