@@ -27,7 +27,12 @@ impl LongWork {
     /// Says how much is done, 0–1. False when the work is to stop and leave nothing behind.
     pub fn goes_on(&self, done: f64) -> bool {
         self.per_mille.store((done * 1000.0) as u32, Ordering::Relaxed);
-        !self.cancelled.load(Ordering::Relaxed)
+        !self.is_cancelled()
+    }
+
+    /// Whether somebody has asked it to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
     }
 
     /// How much is done, 0–1.
@@ -165,6 +170,11 @@ impl Saver {
                 Err(TryRecvError::Disconnected) => None,
             },
             Some(Waiting::Written(done)) => match done.try_recv() {
+                Ok(Err(_)) if self.long.as_ref().is_some_and(|work| work.is_cancelled()) => {
+                    tracing::info!("a final land was given up");
+                    self.say("final land: given up");
+                    None
+                }
                 Ok(done) => {
                     self.tell(done);
                     None

@@ -215,17 +215,28 @@ fn save(glyph: Glyph<'_>) {
     glyph.line(&[(-0.78, 0.2), (-0.78, 0.72), (0.78, 0.72), (0.78, 0.2)], 1.0);
 }
 
-/// A summit on whose flanks valleys branch, as fine as they come.
+/// A range, and over it the sparkle of what is finished.
 fn final_land(glyph: Glyph<'_>) {
-    glyph.line(&[(-0.95, 0.62), (0.0, -0.82), (0.95, 0.62)], 1.0);
-    for towards in [-1.0, 1.0] {
-        glyph.line(
-            &[(0.0, -0.82), (0.16 * towards, -0.18), (0.3 * towards, 0.62)],
-            0.9,
-        );
-        glyph.line(&[(0.16 * towards, -0.18), (0.62 * towards, 0.62)], 0.7);
+    glyph.line(
+        &[
+            (-0.98, 0.7),
+            (-0.38, -0.34),
+            (0.02, 0.3),
+            (0.24, 0.04),
+            (0.74, 0.7),
+        ],
+        1.0,
+    );
+    glyph.line(&[(-0.98, 0.7), (0.74, 0.7)], 0.75);
+    glyph.line(&[(-0.38, -0.34), (-0.3, 0.2), (-0.48, 0.7)], 0.75);
+    let star: Vec<(f32, f32)> = (0..8)
+        .map(|k| (if k % 2 == 0 { 0.46 } else { 0.13 }, PI / 4.0 * k as f32))
+        .map(|(reach, angle)| (0.52 + reach * angle.cos(), -0.52 + reach * angle.sin()))
+        .collect();
+    for k in 0..4 {
+        let (tip, before, after) = (star[2 * k], star[(2 * k + 7) % 8], star[2 * k + 1]);
+        glyph.fill(&[(0.52, -0.52), before, tip, after], 1.0);
     }
-    glyph.line(&[(0.0, -0.05), (0.0, 0.62)], 0.7);
 }
 
 /// A ball with a meridian and the equator.

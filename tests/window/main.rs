@@ -1,5 +1,6 @@
 //! The program in a real window, under real fingers.
 
+mod final_land;
 mod globe;
 mod kiosk;
 mod mountain;

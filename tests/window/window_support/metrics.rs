@@ -49,6 +49,8 @@ pub(crate) struct Second {
     pub(crate) led_deg_per_my: f64,
     /// Highest point, metres.
     pub(crate) max_m: f64,
+    /// Nodes of the land.
+    pub(crate) nodes: u64,
     /// The window's inside, pixels.
     pub(crate) width: u32,
     pub(crate) height: u32,

@@ -43,6 +43,7 @@ pub(crate) enum Key {
     Escape = 9,
     R = 27,
     S = 39,
+    M = 58,
     Alt = 64,
     F4 = 70,
     F11 = 95,
@@ -251,8 +252,18 @@ impl Table {
     pub(crate) fn save(&mut self) -> Land {
         self.saves += 1;
         self.press(&[Key::S], 0.05);
-        let saved = self.folder.join(format!("orogen-out/table-{:03}", self.saves));
-        let until = Instant::now() + Duration::from_secs_f64(SLOW_S);
+        self.saved(&format!("table-{:03}", self.saves), SLOW_S)
+    }
+
+    /// Whether anything of that name has been saved.
+    pub(crate) fn has_saved(&self, name: &str) -> bool {
+        self.folder.join("orogen-out").join(name).exists()
+    }
+
+    /// Reads the land that is saved under a name, once it is there.
+    pub(crate) fn saved(&mut self, name: &str, seconds: f64) -> Land {
+        let saved = self.folder.join("orogen-out").join(name);
+        let until = Instant::now() + Duration::from_secs_f64(seconds);
         while !Land::FILES.iter().all(|file| saved.join(file).is_file()) {
             assert!(Instant::now() < until, "no land in {}", saved.display());
             thread::sleep(Duration::from_millis(100));
