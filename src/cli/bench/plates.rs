@@ -180,6 +180,7 @@ pub(super) fn fold_skeleton(mesh: &FoldMesh) -> Skeleton {
 }
 
 /// The transport under three hands on a table.
+#[cfg(feature = "app")]
 pub(super) fn three_plates_transport() -> TransportProblem {
     let (map, params) = (table(), MountainParams::default());
     transport_of(&three_plates(&map, &params), &map, &params)
