@@ -4,7 +4,7 @@ use glam::DVec2;
 use spade::handles::FixedVertexHandle;
 use spade::{DelaunayTriangulation, InsertionError, Point2, Triangulation};
 
-use super::hilbert::hilbert_order;
+use super::hilbert::{hilbert_order, in_two_passes};
 use super::sampling::{Samples, poisson_disc, saturated, saturated_at_most};
 use super::voronoi::cell_areas;
 use crate::units::Extent;
@@ -264,8 +264,8 @@ impl Tin {
         Self::triangulate(extent, nodes.to_vec(), flags, &hilbert_order(extent, nodes))
     }
 
-    /// Triangulates checked positions, inserting them in the order of `along_curve`: each insertion starts its
-    /// search at the node before, one step away.
+    /// Triangulates checked positions, inserting them [`in_two_passes`] along the curve: each insertion starts its search
+    /// at the node before, a step or two away.
     fn triangulate(
         extent: Extent,
         positions: Vec<DVec2>,
@@ -273,10 +273,11 @@ impl Tin {
         along_curve: &[u32],
     ) -> Result<Self, TinError> {
         let n = positions.len();
+        let order = in_two_passes(along_curve);
         // Three edges and two triangles per node.
         let mut delaunay = Triangles::with_capacity(n, 3 * n, 2 * n);
         let mut hint = None;
-        for (inserted, &node) in along_curve.iter().enumerate() {
+        for (inserted, &node) in order.iter().enumerate() {
             let p = positions[node as usize];
             let vertex = Point2::new(p.x, p.y);
             let handle = match hint {
@@ -289,7 +290,7 @@ impl Tin {
             })?;
             // A node on top of another replaces it, and gets its handle.
             if handle.index() != inserted {
-                let first = along_curve[handle.index()];
+                let first = order[handle.index()];
                 return Err(coincident(first, node));
             }
             hint = Some(handle);
@@ -306,7 +307,7 @@ impl Tin {
             border: border.unwrap_or_default(),
             positions,
         };
-        let hull = tin.read_links(&delaunay, along_curve)?;
+        let hull = tin.read_links(&delaunay, &order)?;
         drop(delaunay);
         tin.areas = cell_areas(&tin, &hull);
         if tin.border.is_empty() {
@@ -315,12 +316,13 @@ impl Tin {
         Ok(tin)
     }
 
-    /// Takes links and triangles from the triangulation; returns which nodes are on its hull.
-    fn read_links(&mut self, delaunay: &Triangles, along_curve: &[u32]) -> Result<Vec<bool>, TinError> {
+    /// Takes links and triangles from the triangulation, whose vertices are the nodes in this `order`; returns which nodes
+    /// are on its hull.
+    fn read_links(&mut self, delaunay: &Triangles, order: &[u32]) -> Result<Vec<bool>, TinError> {
         let n = self.positions.len();
         let mut hull = Vec::with_capacity(n);
         let mut vertex_of = vec![0_u32; n];
-        for (vertex, &node) in along_curve.iter().enumerate() {
+        for (vertex, &node) in order.iter().enumerate() {
             vertex_of[node as usize] = vertex as u32;
         }
         let min_spacing = MIN_SPACING * self.extent.width.max(self.extent.height);
@@ -331,7 +333,7 @@ impl Tin {
             let vertex = FixedVertexHandle::from_index(vertex_of[node as usize] as usize);
             ring.clear();
             let ways_out = delaunay.vertex(vertex).out_edges();
-            ring.extend(ways_out.map(|edge| (along_curve[edge.to().index()], !edge.is_outer_edge())));
+            ring.extend(ways_out.map(|edge| (order[edge.to().index()], !edge.is_outer_edge())));
             let gap = ring.iter().position(|&(_, triangle)| !triangle);
             let start = gap.map_or_else(
                 || (0..ring.len()).min_by_key(|&k| ring[k].0).unwrap_or(0),
