@@ -12,7 +12,7 @@ use crate::export::{OutDir, digest};
 use crate::input::maps::{MapKind, read_map};
 use crate::report::{Inputs, REPORT_VERSION, TerrainFacts};
 use crate::surface::Raster;
-use crate::terrain::{Edges, Erosion, ErosionParams, Flow, Forcing, Outlets, StartLand, Tin};
+use crate::terrain::{Edges, Erosion, ErosionParams, Flow, Forcing, StartLand, Tin};
 use crate::units::{Extent, KM};
 
 /// Nodes where the user does not say.
@@ -246,13 +246,8 @@ fn erode(
     timings.lap("erosion");
 
     let risen: Vec<f64> = uplift.iter().map(|u| u * args.years).collect();
-    let outlets = if params.edges == Edges::Fixed {
-        Outlets::Border
-    } else {
-        Outlets::Lowest
-    };
     let mut flow = Flow::new(&tin);
-    flow.route(&tin, &z, outlets, rain.as_deref());
+    flow.route(&tin, &z, params.edges.into(), rain.as_deref());
     let mut terrain = TerrainFacts::new(&tin, &z, &flow, &risen);
     terrain.years = args.years;
     terrain.steps = steps;

@@ -21,7 +21,7 @@ use crate::mountain::tectonics::TectonicReport;
 use crate::mountain::transport::TransportStage;
 use crate::mountain::{PlateSet, TectonicField, Tectonics};
 use crate::surface::Cut;
-use crate::terrain::{Edges, Erosion, Flow, Outlets, Sediment};
+use crate::terrain::{Edges, Erosion, Flow, Sediment};
 
 /// Numbers that were none, and what became of them. They never reach the land.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -222,11 +222,7 @@ impl Sim {
     /// The same into memory for this land's nodes, which is reused.
     pub fn route(&self, flow: &mut Flow) {
         let world = &self.state.world;
-        let outlets = match self.params.erosion.edges {
-            Edges::Fixed => Outlets::Border,
-            Edges::Free => Outlets::Lowest,
-        };
-        flow.route(&world.tin, &world.z, outlets, None);
+        flow.route(&world.tin, &world.z, self.params.erosion.edges.into(), None);
     }
 
     /// What the contacts were.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::blocks::{BLOCK, Stretch, sum_in_blocks};
-use super::flow::{Flow, Outlets};
+use super::flow::Flow;
 use super::landslide::{Landslides, Slopes};
 use super::params::{Edges, ErosionParams};
 use super::sediment::{Deposition, Falls, Moved, Sediment};
@@ -164,8 +164,7 @@ impl Erosion {
         dt_yr: f64,
     ) -> StepSums {
         forcing.check(tin.len());
-        let fixed = params.edges == Edges::Fixed;
-        let outlets = if fixed { Outlets::Border } else { Outlets::Lowest };
+        let outlets = params.edges.into();
         self.flow
             .route_with(tin, z, outlets, forcing.rain, sediment.is_some());
         let mut sums = StepSums {

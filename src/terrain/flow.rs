@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::blocks::{BLOCK, Blocks};
 use super::lakes::Lakes;
+use super::params::Edges;
 use super::tin::{Link, NodeId, Tin};
 
 /// Nodes per task of the parallel passes. They are maps without sums, so any cut gives the same bits.
@@ -38,6 +39,15 @@ pub enum Outlets {
     Border,
     /// Only those border nodes that have no lower neighbour, or that a lake spills over.
     Lowest,
+}
+
+impl From<Edges> for Outlets {
+    fn from(edges: Edges) -> Self {
+        match edges {
+            Edges::Fixed => Self::Border,
+            Edges::Free => Self::Lowest,
+        }
+    }
 }
 
 impl Flow {

@@ -26,7 +26,7 @@ use super::exposure::Exposure;
 use super::{Checkpoint, SimParams, World};
 use crate::mountain::PlateSet;
 use crate::mountain::strata::NodeFolds;
-use crate::terrain::{Edges, Erosion, ErosionParams, Flow, Forcing, Outlets, Resampling, Tin, TinError};
+use crate::terrain::{Edges, Erosion, ErosionParams, Flow, Forcing, Resampling, Tin, TinError};
 use crate::units::PlanMap;
 use hold::Hold;
 use region::Crossings;
@@ -462,12 +462,8 @@ fn steps_of(later: usize) -> usize {
 
 /// The water over a land.
 fn routed(land: &World, edges: Edges, rain: Option<&[f64]>) -> Flow {
-    let outlets = match edges {
-        Edges::Fixed => Outlets::Border,
-        Edges::Free => Outlets::Lowest,
-    };
     let mut flow = Flow::new(&land.tin);
-    flow.route(&land.tin, &land.z, outlets, rain);
+    flow.route(&land.tin, &land.z, edges.into(), rain);
     flow
 }
 
