@@ -162,16 +162,7 @@ impl DartBoard {
 
     /// Throws until there are `target` positions in all, or no room is left.
     pub(super) fn fill(&mut self, target: usize, rng: &mut Pcg64Mcg) {
-        let mut open = Vec::with_capacity(self.stride * self.rows);
-        for row in 0..self.rows {
-            let first = ((row + PAD) * self.stride + PAD) as u32;
-            let row = (first..first + (self.stride - 2 * PAD) as u32).filter(|&cell| self.is_empty(cell));
-            open.extend(row.map(|cell| Open {
-                cell,
-                sub_x: 0,
-                sub_y: 0,
-            }));
-        }
+        let mut open = self.empty_cells();
         let mut side = 1.0;
         for level in 0..LEVELS {
             let slices: &[f64] = if level == 0 { &SLICES } else { &SPLIT_SLICES };
@@ -186,6 +177,28 @@ impl DartBoard {
             side *= 0.5;
             open = split(self, &open, side);
         }
+    }
+
+    /// All cells without a sample, row by row.
+    fn empty_cells(&self) -> Vec<Open> {
+        let columns = self.stride - 2 * PAD;
+        let square = |cell| Open {
+            cell,
+            sub_x: 0,
+            sub_y: 0,
+        };
+        let mut open = vec![square(0); columns * self.rows];
+        let mut count = 0;
+        for row in 0..self.rows {
+            let first = (row + PAD) * self.stride + PAD;
+            for (cell, &x) in (first..).zip(&self.xs[first..first + columns]) {
+                // Each is written, and the next one over it where it is taken: nearly none is, and asking costs more.
+                open[count] = square(cell as u32);
+                count += usize::from(x == EMPTY);
+            }
+        }
+        open.truncate(count);
+        open
     }
 
     /// One dart into each of a random `share` of the squares, unless their cell holds a sample by now.
