@@ -96,6 +96,8 @@ impl Saver {
         if self.waiting.is_none() {
             self.long = Some(Arc::default());
             self.ask(session);
+        } else {
+            self.say("another save is on its way");
         }
     }
 

@@ -103,6 +103,7 @@ impl Bench {
     /// Skeletons of folds, crests and troughs together, and their heights on 1024² cells.
     pub(super) fn folds(&mut self) -> Result<(), Failure> {
         let grid = fold_grid();
+        let drive = fold_drive();
         for FoldSize {
             state,
             wavelength_km,
@@ -112,7 +113,7 @@ impl Bench {
         {
             let mesh = fold_mesh(wavelength_km)?;
             let choose = || {
-                let skeleton = fold_skeleton(&mesh);
+                let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
                 let lines = skeleton.top_len() + troughs(&mesh, &skeleton).len();
                 (skeleton, lines)
             };
@@ -173,10 +174,9 @@ pub(super) fn fold_mesh(wavelength_km: f64) -> Result<FoldMesh, Failure> {
     FoldMesh::new(SQUARE, wavelength_km * KM, SEED).map_err(Failure::other)
 }
 
-/// Folds everywhere, across one direction.
-pub(super) fn fold_skeleton(mesh: &FoldMesh) -> Skeleton {
-    let drive = FoldDrive::uniform(fold_grid().blocks(), UPLIFT, 0.4);
-    Skeleton::select(mesh, &drive, None, &[])
+/// What makes folds everywhere, across one direction.
+pub(super) fn fold_drive() -> FoldDrive {
+    FoldDrive::uniform(fold_grid().blocks(), UPLIFT, 0.4)
 }
 
 /// The transport under three hands on a table.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::Bench;
 use super::goals::GRID;
 use super::plates::{
-    FOLD_SIZES, FoldSize, PAPER_TRANSPORT_MS, fold_grid, fold_mesh, fold_skeleton, three_plates_transport,
+    FOLD_SIZES, FoldSize, PAPER_TRANSPORT_MS, fold_drive, fold_grid, fold_mesh, three_plates_transport,
 };
 use crate::cli::failure::Failure;
 use crate::gpu::{Gpu, GpuFolds, GpuTransport};
-use crate::mountain::fold::{FoldShape, FoldStage};
+use crate::mountain::fold::{FoldShape, FoldStage, Skeleton};
 use crate::mountain::transport::{TransportField, TransportStage};
 
 impl Bench {
@@ -44,7 +44,7 @@ impl Bench {
             },
         );
 
-        let grid = fold_grid();
+        let (grid, drive) = (fold_grid(), fold_drive());
         let on_card = folds.on_card();
         for FoldSize {
             state,
@@ -54,7 +54,7 @@ impl Bench {
         } in FOLD_SIZES
         {
             let mesh = fold_mesh(wavelength_km)?;
-            let skeleton = fold_skeleton(&mesh);
+            let skeleton = Skeleton::select(&mesh, &drive, None, &[]);
             let mut heights = Vec::new();
             let mut run = || folds.on_grid(&FoldShape::new(&mesh, &skeleton), grid, &mut heights);
             run();
